@@ -1,0 +1,51 @@
+# Finds what vigia stands on and wraps the libraries that bring no imported target. Used by the
+# build and by the installed package alike.
+
+include(CMakeFindDependencyMacro)
+
+find_dependency(Eigen3 3.4 NO_MODULE)
+find_dependency(yaml-cpp 0.7)
+find_dependency(OpenCV 4.6 COMPONENTS core imgproc imgcodecs videoio calib3d)
+find_dependency(Threads)
+
+# ViSP's package resets the C++ standard and appends flags for the whole project: undo both.
+set(_vigia_cxx_flags "${CMAKE_CXX_FLAGS}")
+if(DEFINED CMAKE_CXX_STANDARD)
+  set(_vigia_cxx_standard "${CMAKE_CXX_STANDARD}")
+endif()
+find_dependency(VISP 3.5)
+set(CMAKE_CXX_FLAGS "${_vigia_cxx_flags}")
+unset(CMAKE_CXX_STANDARD)
+if(DEFINED _vigia_cxx_standard)
+  set(CMAKE_CXX_STANDARD "${_vigia_cxx_standard}")
+endif()
+
+if(NOT TARGET vigia::visp)
+  add_library(vigia::visp INTERFACE IMPORTED)
+  target_include_directories(vigia::visp SYSTEM INTERFACE ${VISP_INCLUDE_DIRS})
+  target_link_libraries(vigia::visp INTERFACE visp_core visp_blob visp_me visp_robot visp_vs
+                                              visp_visual_features)
+endif()
+
+if(NOT TARGET vigia::opencv)
+  add_library(vigia::opencv INTERFACE IMPORTED)
+  target_include_directories(vigia::opencv SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
+  target_link_libraries(vigia::opencv INTERFACE opencv_core opencv_imgproc opencv_imgcodecs
+                                                opencv_videoio opencv_calib3d)
+endif()
+
+find_dependency(ompl 1.5)
+if(NOT TARGET vigia::ompl)
+  add_library(vigia::ompl INTERFACE IMPORTED)
+  target_include_directories(vigia::ompl SYSTEM INTERFACE ${OMPL_INCLUDE_DIRS})
+  target_link_libraries(vigia::ompl INTERFACE ${OMPL_LIBRARIES})
+endif()
+
+find_dependency(PkgConfig)
+if(NOT TARGET PkgConfig::vigia_cairo)
+  pkg_check_modules(vigia_cairo REQUIRED IMPORTED_TARGET GLOBAL cairo)
+endif()
+
+find_dependency(nlohmann_json 3.11)
+find_dependency(fmt)
+find_dependency(spdlog 1.10)

@@ -1,0 +1,36 @@
+# vigia_module(NAME SOURCES… [PUBLIC …] [PRIVATE …]) makes the static library vigia::NAME.
+# vigia_test(MODULE SOURCES… [LINK …]) makes the GoogleTest program test_MODULE.
+
+add_library(vigia_options INTERFACE)
+target_compile_features(vigia_options INTERFACE cxx_std_17)
+# No contraction of a*b+c: the same bytes whatever the vector width the compiler chooses.
+target_compile_options(vigia_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wconversion -Wshadow -ffp-contract=off
+  $<$<BOOL:${VIGIA_WERROR}>:-Werror>)
+
+function(vigia_module name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  add_library(vigia_${name} STATIC ${ARG_SOURCES})
+  add_library(vigia::${name} ALIAS vigia_${name})
+  set_target_properties(vigia_${name} PROPERTIES EXPORT_NAME ${name} CXX_EXTENSIONS OFF
+                                                 POSITION_INDEPENDENT_CODE ON)
+  target_compile_features(vigia_${name} PUBLIC cxx_std_17)
+  target_include_directories(vigia_${name}
+    PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>
+    PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+  target_link_libraries(vigia_${name}
+    PUBLIC ${ARG_PUBLIC}
+    PRIVATE $<BUILD_INTERFACE:vigia_options> ${ARG_PRIVATE})
+  set_property(GLOBAL APPEND PROPERTY VIGIA_MODULES vigia_${name})
+endfunction()
+
+function(vigia_test module)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(test_${module} ${ARG_SOURCES})
+  target_link_libraries(test_${module} PRIVATE vigia_options ${ARG_LINK} GTest::gmock GTest::gtest_main)
+  target_include_directories(test_${module} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_compile_definitions(test_${module} PRIVATE
+    VIGIA_SOURCE_DIR="${PROJECT_SOURCE_DIR}" VIGIA_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
+  gtest_discover_tests(test_${module} TEST_PREFIX ${module}. DISCOVERY_TIMEOUT 120
+                       PROPERTIES TIMEOUT 300)
+endfunction()

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "vigia/core/error.hpp"
+
+namespace vigia {
+
+/// A node of a configuration tree that remembers where each value was written.
+struct ConfigNode {
+  enum class Kind { null, scalar, list, map };
+  using Entry = std::pair<std::string, std::shared_ptr<ConfigNode>>;
+
+  Kind kind = Kind::null;
+  std::string scalar;
+  bool quoted = false;
+  std::vector<std::shared_ptr<ConfigNode>> items;
+  std::vector<Entry> entries;  ///< in the order of the file
+  SourceLocation where;
+
+  ConfigNode* find(const std::string& key) const;
+};
+
+/// Reads a YAML file, strictly: `version: 1` is required at the top, duplicate keys are errors,
+/// `extends: other.yaml` (relative to the file) is merged below it (maps merge, lists replace,
+/// cycles are errors). The result has neither `version` nor `extends`. Throws InputError.
+std::shared_ptr<ConfigNode> load_config(const std::filesystem::path& file);
+
+/// The same from a string; @p name stands for the file in messages.
+std::shared_ptr<ConfigNode> parse_config(const std::string& text, const std::string& name);
+
+/// Sets a value at a dotted path as `--set a.b=value` does; the value is YAML. Maps on the way are
+/// made; a list or scalar on the way is an error.
+void set_config(ConfigNode& root, const std::string& assignment);
+
+/// Writes the tree as YAML with `version: 1`; read back, it gives the same tree.
+std::string dump_config(const ConfigNode& root);
+
+/// Bounds of a number, both inclusive.
+struct Range {
+  double low;
+  double high;
+};
+
+/// Reads the keys of one map, each once, and in finish() rejects those that nobody asked for.
+/// A default that is used is written back into the tree: dumped afterwards, the tree is fully
+/// resolved. Every getter throws InputError with file:line:column, key, value and what would be
+/// right. The unit is part of the key (`_m`, `_deg`, `_s`, `_px`); values are returned as written.
+class MapReader {
+ public:
+  /// @p what names the map in messages, e.g. "planner". A null node counts as an empty map.
+  MapReader(std::shared_ptr<ConfigNode> node, std::string what);
+
+  bool has(const std::string& key) const;
+  const SourceLocation& where() const;
+  SourceLocation where(const std::string& key) const;
+
+  double number(const std::string& key, Range range);
+  double number(const std::string& key, Range range, double fallback);
+  std::int64_t integer(const std::string& key, Range range);
+  std::int64_t integer(const std::string& key, Range range, std::int64_t fallback);
+  bool boolean(const std::string& key, bool fallback);
+  std::string text(const std::string& key);
+  std::string text(const std::string& key, const std::string& fallback);
+  /// One of @p choices; returns its index.
+  std::size_t choice(const std::string& key, const std::vector<std::string>& choices);
+  std::size_t choice(const std::string& key, const std::vector<std::string>& choices,
+                     std::size_t fallback);
+  /// A list of exactly N numbers, each in @p range.
+  Eigen::Vector2d vector2(const std::string& key, Range range);
+  Eigen::Vector2d vector2(const std::string& key, Range range, const Eigen::Vector2d& fallback);
+  Eigen::Vector3d vector3(const std::string& key, Range range);
+  Eigen::Vector3d vector3(const std::string& key, Range range, const Eigen::Vector3d& fallback);
+  /// A list of points, each a list of two numbers, at least @p least of them.
+  std::vector<Eigen::Vector2d> points2(const std::string& key, Range range, std::size_t least);
+
+  /// A map below this one; absent it reads as empty, and is created when something is resolved.
+  MapReader map(const std::string& key);
+  /// A list of maps; absent it reads as empty.
+  std::vector<MapReader> maps(const std::string& key);
+  /// A map given in place, or the name of a file (relative to the file in which the value was
+  /// written) that holds it; a file's content takes the place of its name in the tree.
+  MapReader map_or_file(const std::string& key);
+
+  /// Throws InputError for the first key that no getter asked for, and names a near one.
+  void finish() const;
+
+  /// An InputError at a key (or at the map, when the key is absent).
+  InputError error(const std::string& key, const std::string& what) const;
+
+ private:
+  std::shared_ptr<ConfigNode> node_;
+  std::string what_;
+  mutable std::set<std::string> asked_;
+};
+
+}  // namespace vigia

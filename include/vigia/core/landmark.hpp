@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+namespace vigia {
+
+using LandmarkId = int;
+
+/// A solid dark disc on a light ground (Armingol §4).
+struct DiscShape {
+  double radius_m = 0.1;
+};
+
+/// A landmark of the map. Frame l lies in the landmark's centre: z is the outward normal (towards
+/// the viewer), y points up, x to the viewer's right: (x, y) is the picture as a viewer sees it.
+struct Landmark {
+  LandmarkId id = 0;
+  Eigen::Isometry3d wMl = Eigen::Isometry3d::Identity();
+  std::variant<DiscShape> shape;
+
+  Eigen::Vector3d centre_w() const { return wMl.translation(); }
+  Eigen::Vector3d normal_w() const { return wMl.linear().col(2); }
+};
+
+/// wMl of a landmark on a vertical wall: centre and the direction of the outward normal in the
+/// floor plane (radians from the world's x axis).
+Eigen::Isometry3d wall_mount(const Eigen::Vector3d& centre_w, double normal_yaw);
+
+/// The radius of a disc landmark, or nothing for another shape.
+std::optional<double> disc_radius(const Landmark& landmark);
+
+/// The landmarks that the robot knows, with unique ids, in ascending order of id.
+class LandmarkMap {
+ public:
+  LandmarkMap() = default;
+  /// Throws std::invalid_argument when an id occurs twice.
+  explicit LandmarkMap(std::vector<Landmark> landmarks);
+
+  const std::vector<Landmark>& all() const { return landmarks_; }
+  /// The landmark of that id, or nullptr.
+  const Landmark* find(LandmarkId id) const;
+
+ private:
+  std::vector<Landmark> landmarks_;
+};
+
+}  // namespace vigia

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <variant>
+
+#include <Eigen/Core>
+
+#include "vigia/core/camera.hpp"
+#include "vigia/core/head.hpp"
+#include "vigia/core/landmark.hpp"
+#include "vigia/core/stamp.hpp"
+
+namespace vigia {
+
+/// Numbers the acquisitions of a mission: a look is one acquisition of one landmark, from the gaze
+/// order until it is released. 0 means no look.
+using LookId = std::int64_t;
+
+/// An ellipse in pixels. psi is the angle of the semi-axis a ≥ b from the u axis towards v, in
+/// (-π/2, π/2].
+struct Ellipse {
+  double u = 0.0;
+  double v = 0.0;
+  double a = 0.0;
+  double b = 0.0;
+  double psi = 0.0;
+};
+
+/// What the robot's own sensors said when an image was exposed. Everything here is a reading, not
+/// the truth.
+struct SensorSnapshot {
+  Stamp stamp;           ///< middle of the exposure
+  Intrinsics intrinsics; ///< calibrated, at the zoom's reading
+  HeadAngles head;       ///< encoder readings
+  double zoom_mm = 8.0;  ///< zoom motor's reading
+  LookId look = 0;       ///< the acquisition that this image belongs to
+};
+
+/// The image of one disc.
+struct EllipseObservation {
+  SensorSnapshot sensor;
+  /// The landmark that was asked for. Discs look all alike, so this is an expectation, not an
+  /// identity: the localizer associates.
+  std::optional<LandmarkId> expected;
+  Ellipse ellipse;
+  /// Of (u, v, a, b, psi).
+  Eigen::Matrix<double, 5, 5> covariance = Eigen::Matrix<double, 5, 5>::Identity();
+};
+
+/// What tracking hands to localization: closed by the geometry of the feature.
+using Observation = std::variant<EllipseObservation>;
+
+/// The snapshot that came with an observation.
+const SensorSnapshot& sensor_of(const Observation& observation);
+
+}  // namespace vigia

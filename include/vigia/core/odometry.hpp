@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "vigia/core/pose.hpp"
+#include "vigia/core/stamp.hpp"
+
+namespace vigia {
+
+/// A displacement as the wheels report it: turn by rot1, go trans, turn by rot2 (Armingol §5.1,
+/// u(k) = (T, ΔΘ1, ΔΘ2)). Metres and radians.
+struct OdometryIncrement {
+  Stamp from;
+  Stamp to;
+  double rot1 = 0.0;
+  double trans = 0.0;
+  double rot2 = 0.0;
+};
+
+/// Random-walk error of odometry: variances that grow with the distance driven and the angle
+/// turned, so that splitting an increment changes nothing.
+struct OdometryNoise {
+  double trans_per_sqrt_m = 0.01;     ///< m per √m driven, along the path
+  double rot_per_sqrt_m = 0.005;      ///< rad per √m driven
+  double rot_per_sqrt_rad = 0.01;     ///< rad per √rad turned
+};
+
+/// Covariance Σ of (rot1, trans, rot2); the turn's error is split evenly between rot1 and rot2.
+Eigen::Matrix3d control_covariance(const OdometryIncrement& u, const OdometryNoise& noise);
+
+/// Armingol eq. 6, corrected: translation along Θ + ΔΘ1.
+Pose2 move(const Pose2& pose, const OdometryIncrement& u);
+/// ∂move/∂pose.
+Eigen::Matrix3d move_jacobian_pose(const Pose2& pose, const OdometryIncrement& u);
+/// ∂move/∂(rot1, trans, rot2).
+Eigen::Matrix3d move_jacobian_control(const Pose2& pose, const OdometryIncrement& u);
+
+/// The increment of a base that ran at constant speed v (m/s) and turn rate w (rad/s): an arc,
+/// whose chord is trans.
+OdometryIncrement arc_increment(double v, double w, Stamp from, Stamp to);
+
+}  // namespace vigia

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "vigia/core/config.hpp"
+#include "vigia/core/floor_plan.hpp"
+#include "vigia/core/landmark.hpp"
+
+namespace vigia {
+
+/// What the robot knows of the building: plan and landmarks.
+struct WorldMap {
+  std::string name;
+  FloorPlan plan;
+  LandmarkMap landmarks;
+};
+
+/// Reads the keys `name`, `room`, `walls`, `obstacles`, `landmarks` of a world file. Throws
+/// InputError: a landmark inside a wall or outside the room, off every face, overlapping ids, …
+WorldMap read_world_map(MapReader& reader);
+
+}  // namespace vigia

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "vigia/core/actuation.hpp"
+#include "vigia/core/path.hpp"
+#include "vigia/core/pose.hpp"
+
+namespace vigia::pilot {
+
+struct PathFollowerParams {
+  double lookahead_m = 0.35;        ///< distance of the pursued point ahead on the path
+  double turn_in_place_deg = 40.0;  ///< heading error above which the base turns on the spot
+  double goal_tolerance_m = 0.05;   ///< arrived when the estimate is this near to the path's end
+  double slow_down_m = 0.3;         ///< speed falls linearly over this distance before the end
+};
+
+/// Follows a path from the estimated pose: pure pursuit with a turn on the spot at sharp corners.
+class PathFollower {
+ public:
+  PathFollower(Path path, BaseLimits limits, PathFollowerParams params);
+
+  /// The rates for now; zero once arrived().
+  BaseRates step(const Pose2& estimate);
+  bool arrived() const { return arrived_; }
+  /// Arc length reached.
+  double station() const { return station_; }
+  const Path& path() const { return path_; }
+
+ private:
+  Path path_;
+  BaseLimits limits_;
+  PathFollowerParams params_;
+  double station_ = 0.0;
+  bool turning_ = false;
+  bool arrived_ = false;
+};
+
+}  // namespace vigia::pilot

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "vigia/core/camera.hpp"
+#include "vigia/core/config.hpp"
+#include "vigia/core/floor_plan.hpp"
+#include "vigia/core/landmark.hpp"
+#include "vigia/core/stamp.hpp"
+#include "vigia/core/world_map.hpp"
+#include "vigia/imaging/frame.hpp"
+
+namespace vigia::sim {
+
+/// How the camera turns light into grey levels.
+struct ImagingParams {
+  double noise_sigma = 4.0;  ///< grey levels, Gaussian, independent per pixel and frame
+  double blur_px = 0.7;      ///< σ of the optical blur at the discs' outlines
+  bool colour = false;       ///< whether frames carry colour (grey frames are cheaper)
+};
+
+/// Looks of the building: texture of walls, floor and ceiling, light, dark round clutter.
+/// Read from the world file's `appearance` and `clutter`.
+struct Appearance;
+
+/// The true world as a camera sees it: walls, floor, ceiling and obstacles with texture, discs on
+/// light plates, clutter.
+class Scene {
+ public:
+  Scene(const WorldMap& world, std::shared_ptr<const Appearance> appearance, std::uint64_t seed);
+  ~Scene();
+  Scene(Scene&&) noexcept;
+  Scene& operator=(Scene&&) noexcept;
+
+  /// The exposure of a camera at wMc with true intrinsics. The noise of a pixel is a hash of seed,
+  /// stamp, u and v. The frame refers to the scene and must not outlive it.
+  std::unique_ptr<imaging::Frame> expose(const Eigen::Isometry3d& wMc, const Intrinsics& intrinsics,
+                                         Stamp stamp, const ImagingParams& params) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Reads `appearance` and `clutter` of a world file; absent keys have pleasant defaults.
+std::shared_ptr<const Appearance> read_appearance(MapReader& reader, const WorldMap& world);
+
+}  // namespace vigia::sim

@@ -1,0 +1,42 @@
+#pragma once
+
+#include "vigia/sim/robot.hpp"
+#include "vigia/sim/scene.hpp"
+
+namespace vigia::sim {
+
+/// Everything that a mission's file says of its robot: the robot, its camera and its zoom.
+struct RobotSetup {
+  std::string name;
+  RobotParams robot;
+  ZoomCalibration zoom;     ///< what the robot believes; per-look focal error on top is the truth
+  ImagingParams imaging;
+  double initial_zoom_mm = 8.0;
+};
+
+/// Reads a robot file: keys `name`, `base`, `head`, `zoom`, `camera`, `odometry`, `sensor`.
+RobotSetup read_robot_setup(MapReader& reader);
+
+/// The simulated world with the robot in it.
+class Simulator {
+ public:
+  Simulator(const RobotSetup& setup, const WorldMap& world,
+            std::shared_ptr<const Appearance> appearance, const Pose2& start, std::uint64_t seed);
+
+  Robot& robot() { return robot_; }
+  const Robot& robot() const { return robot_; }
+  const Scene& scene() const { return scene_; }
+
+  /// The camera's exposure at the robot's present true state.
+  std::unique_ptr<imaging::Frame> expose() const;
+  /// Distance from the robot's hull to the nearest true face, m; negative: collided.
+  double clearance() const;
+
+ private:
+  RobotSetup setup_;
+  FloorPlan plan_;
+  Robot robot_;
+  Scene scene_;
+};
+
+}  // namespace vigia::sim

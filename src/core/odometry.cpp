@@ -1,0 +1,46 @@
+#include "vigia/core/odometry.hpp"
+
+#include <cmath>
+
+namespace vigia {
+
+Eigen::Matrix3d control_covariance(const OdometryIncrement& u, const OdometryNoise& noise) {
+  const double distance = std::abs(u.trans);
+  const double turned = std::abs(u.rot1) + std::abs(u.rot2);
+  const double rotation = noise.rot_per_sqrt_m * noise.rot_per_sqrt_m * distance +
+                          noise.rot_per_sqrt_rad * noise.rot_per_sqrt_rad * turned;
+  const double translation = noise.trans_per_sqrt_m * noise.trans_per_sqrt_m * distance;
+  return Eigen::Vector3d(0.5 * rotation, translation, 0.5 * rotation).asDiagonal();
+}
+
+Pose2 move(const Pose2& pose, const OdometryIncrement& u) {
+  // Armingol eq. 6, corrected.
+  const double direction = pose.theta + u.rot1;
+  return {pose.x + u.trans * std::cos(direction), pose.y + u.trans * std::sin(direction),
+          wrap_angle(direction + u.rot2)};
+}
+
+Eigen::Matrix3d move_jacobian_pose(const Pose2& pose, const OdometryIncrement& u) {
+  const double direction = pose.theta + u.rot1;
+  Eigen::Matrix3d dx_dx = Eigen::Matrix3d::Identity();
+  dx_dx(0, 2) = -u.trans * std::sin(direction);
+  dx_dx(1, 2) = u.trans * std::cos(direction);
+  return dx_dx;
+}
+
+Eigen::Matrix3d move_jacobian_control(const Pose2& pose, const OdometryIncrement& u) {
+  const double c = std::cos(pose.theta + u.rot1);
+  const double s = std::sin(pose.theta + u.rot1);
+  Eigen::Matrix3d dx_du;
+  dx_du << -u.trans * s, c, 0.0, u.trans * c, s, 0.0, 1.0, 0.0, 1.0;
+  return dx_du;
+}
+
+OdometryIncrement arc_increment(double v, double w, Stamp from, Stamp to) {
+  const double dt = (to - from).seconds();
+  const double half = 0.5 * w * dt;
+  const double sinc = std::abs(half) < 1e-6 ? 1.0 - half * half / 6.0 : std::sin(half) / half;
+  return {from, to, half, v * dt * sinc, half};
+}
+
+}  // namespace vigia
