@@ -18,7 +18,8 @@ Eigen::Matrix3d base_from_head(const HeadGeometry& geometry, const HeadAngles& a
 }
 
 /// Twist in frame c of a camera at p_r that turns about the axis (point, direction) of frame r.
-Eigen::Matrix<double, 6, 1> twist_about(const Eigen::Isometry3d& rMc, const Eigen::Vector3d& point_r,
+Eigen::Matrix<double, 6, 1> twist_about(const Eigen::Isometry3d& rMc,
+                                        const Eigen::Vector3d& point_r,
                                         const Eigen::Vector3d& axis_r) {
   const Eigen::Matrix3d cRr = rMc.linear().transpose();
   Eigen::Matrix<double, 6, 1> twist;
@@ -67,8 +68,7 @@ HeadAngles aim_at(const HeadGeometry& geometry, const Eigen::Vector3d& p_r) {
   for (int i = 0; i < 3; ++i) {
     // The camera's lateral offset, turned with the head, displaces the point that the head aims at.
     const Eigen::Vector3d offset_h(0.0, geometry.camera_offset_h.y(), geometry.camera_offset_h.z());
-    const Eigen::Vector3d d =
-        p_r - geometry.mount_r - base_from_head(geometry, angles) * offset_h;
+    const Eigen::Vector3d d = p_r - geometry.mount_r - base_from_head(geometry, angles) * offset_h;
     angles.pan = wrap_angle(std::atan2(d.y(), d.x()) - geometry.mount_yaw);
     angles.tilt = std::atan2(d.z(), d.head<2>().norm());
   }

@@ -26,8 +26,13 @@ struct ConfigNode {
   std::vector<std::shared_ptr<ConfigNode>> items;
   std::vector<Entry> entries;  ///< in the order of the file
   SourceLocation where;
+  SourceLocation key_where;  ///< of the key whose value this is; unknown in a list
+  /// Made by a reader for an absent map: it counts as absent until something is written into it.
+  bool implicit = false;
 
   ConfigNode* find(const std::string& key) const;
+  /// Whether it is an implicit map without content.
+  bool absent() const;
 };
 
 /// Reads a YAML file, strictly: `version: 1` is required at the top, duplicate keys are errors,
@@ -98,6 +103,13 @@ class MapReader {
   InputError error(const std::string& key, const std::string& what) const;
 
  private:
+  /// The key with the names of the maps around it, as `--set` takes it.
+  std::string path(const std::string& key) const;
+  const ConfigNode* find(const std::string& key) const;
+  const ConfigNode* ask(const std::string& key);
+  const ConfigNode& require(const std::string& key);
+  void resolve(const std::string& key, std::shared_ptr<ConfigNode> value);
+
   std::shared_ptr<ConfigNode> node_;
   std::string what_;
   mutable std::set<std::string> asked_;

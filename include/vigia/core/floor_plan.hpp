@@ -32,7 +32,9 @@ struct RayHit {
 class FloorPlan {
  public:
   FloorPlan() = default;
-  /// @p outline is the room's simple polygon; @p partitions are thin walls inside it.
+  /// @p outline is the room's simple polygon; @p partitions are thin walls inside it. Throws
+  /// std::invalid_argument for a polygon of fewer than three corners and for a face without length
+  /// or height.
   FloorPlan(std::vector<Eigen::Vector2d> outline, double ceiling_m, std::vector<Wall> partitions,
             std::vector<Obstacle> obstacles);
 
@@ -53,7 +55,8 @@ class FloorPlan {
   /// on a face (a landmark on its wall, to within a millimetre) is not hidden by that face.
   bool line_of_sight(const Eigen::Vector3d& p_w, const Eigen::Vector3d& q_w) const;
 
-  /// Distance to the nearest face, negative inside an obstacle or outside the outline.
+  /// Distance to the nearest face, negative inside an obstacle or outside the outline; infinite
+  /// without any face.
   double clearance(const Eigen::Vector2d& p) const;
 
   /// Corners of the axis-aligned box around the outline.

@@ -23,7 +23,8 @@ class Path {
   Eigen::Vector2d at(double s) const;
   /// Direction of travel at @p s, radians; at a corner that of the segment that begins there.
   double heading(double s) const;
-  /// Arc length of the point of the path nearest to @p p among stations in [from, to].
+  /// Arc length of the point of the path nearest to @p p among stations in [from, to], which are
+  /// clamped to the path. Throws std::invalid_argument unless from ≤ to.
   double project(const Eigen::Vector2d& p, double from, double to) const;
   /// Points every @p spacing of arc length, corners kept, the ends included.
   Path resampled(double spacing) const;
