@@ -1,0 +1,78 @@
+#include "vigia/planner/look_policy.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace vigia::planner {
+namespace {
+
+bool can_be_watched(const Landmark& landmark, const LookContext& context) {
+  const auto& excluded = context.excluded;
+  return std::find(excluded.begin(), excluded.end(), landmark.id) == excluded.end() &&
+         context.visibility.sight(landmark, context.belief.pose) == Sight::visible;
+}
+
+std::vector<const Landmark*> candidates(const LookContext& context) {
+  std::vector<const Landmark*> result;
+  for (const Landmark& landmark : context.landmarks.all()) {
+    if (can_be_watched(landmark, context)) result.push_back(&landmark);
+  }
+  return result;
+}
+
+class FixedPolicy final : public LookPolicy {
+ public:
+  explicit FixedPolicy(std::optional<LandmarkId> fixed) : fixed_(fixed) {}
+  std::string_view name() const override { return "fixed"; }
+  std::optional<LandmarkId> choose(const LookContext& context) override {
+    const Landmark* landmark = fixed_ ? context.landmarks.find(*fixed_) : nullptr;
+    if (landmark == nullptr || !can_be_watched(*landmark, context)) return std::nullopt;
+    return fixed_;
+  }
+
+ private:
+  std::optional<LandmarkId> fixed_;
+};
+
+class RandomPolicy final : public LookPolicy {
+ public:
+  explicit RandomPolicy(RandomStream stream) : stream_(std::move(stream)) {}
+  std::string_view name() const override { return "random"; }
+  std::optional<LandmarkId> choose(const LookContext& context) override {
+    const auto landmarks = candidates(context);
+    if (landmarks.empty()) return std::nullopt;
+    return landmarks[stream_.index(landmarks.size())]->id;
+  }
+
+ private:
+  RandomStream stream_;
+};
+
+class NearestPolicy final : public LookPolicy {
+ public:
+  std::string_view name() const override { return "nearest"; }
+  std::optional<LandmarkId> choose(const LookContext& context) override {
+    const auto landmarks = candidates(context);
+    if (landmarks.empty()) return std::nullopt;
+    const Pose2& pose = context.belief.pose;
+    const auto nearest = std::min_element(
+        landmarks.begin(), landmarks.end(), [&](const Landmark* a, const Landmark* b) {
+          return context.visibility.range(*a, pose) < context.visibility.range(*b, pose);
+        });
+    return (*nearest)->id;
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<LookPolicy> make_look_policy(const std::string& name,
+                                             std::optional<LandmarkId> fixed, RandomStream stream) {
+  if (name == "fixed") return std::make_unique<FixedPolicy>(fixed);
+  if (name == "random") return std::make_unique<RandomPolicy>(std::move(stream));
+  if (name == "nearest") return std::make_unique<NearestPolicy>();
+  return nullptr;
+}
+
+std::vector<std::string> look_policy_names() { return {"fixed", "random", "nearest"}; }
+
+}  // namespace vigia::planner

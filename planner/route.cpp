@@ -1,0 +1,108 @@
+#include "vigia/planner/route.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "room_to_move.hpp"
+#include "route_search.hpp"
+#include "vigia/core/random.hpp"
+
+namespace vigia::planner {
+namespace {
+
+using Eigen::Vector2d;
+using Polyline = std::vector<Vector2d>;
+
+/// The shortest polyline over vertices of @p points (in their order) that the disc can follow.
+Polyline shortcut(const RoomToMove& room, const Polyline& points) {
+  const std::size_t n = points.size();
+  std::vector<double> cost(n, std::numeric_limits<double>::infinity());
+  std::vector<std::size_t> previous(n, 0);
+  cost[0] = 0.0;
+  for (std::size_t i = 0; i + 1 < n; ++i) {
+    for (std::size_t j = i + 1; j < n; ++j) {
+      const double via = cost[i] + (points[j] - points[i]).norm();
+      if (via < cost[j] && room.passes(points[i], points[j])) {
+        cost[j] = via;
+        previous[j] = i;
+      }
+    }
+  }
+  Polyline result{points.back()};
+  for (std::size_t i = n - 1; i != 0; i = previous[i]) result.push_back(points[previous[i]]);
+  std::reverse(result.begin(), result.end());
+  return result;
+}
+
+/// Cuts corners at ever finer subdivisions of the polyline.
+Polyline straighten(const RoomToMove& room, Polyline points) {
+  for (const double spacing : {0.2, 0.1, 0.05}) {
+    points = shortcut(room, Path(points).resampled(spacing).points());
+  }
+  return points;
+}
+
+Polyline plan_between(const RoomToMove& room, const Vector2d& from, const Vector2d& to,
+                      int samples, std::uint64_t seed) {
+  if (room.passes(from, to)) return {from, to};
+  const Polyline found = search_route(room, from, to, samples, seed);
+  return found.empty() ? found : straighten(room, found);
+}
+
+/// A leg with the disc of @p room. Near an end where the disc does not fit, the leg leaves that end
+/// straight for the nearest place where it does.
+Polyline plan_leg(const RoomToMove& room, const Vector2d& start, const Vector2d& goal, int samples,
+                  std::uint64_t seed) {
+  const auto from = room.retreat(start);
+  const auto to = room.retreat(goal);
+  if (!from || !to) return {};
+  Polyline leg = plan_between(room, *from, *to, samples, seed);
+  if (leg.empty()) return leg;
+  if (*from != start) leg.insert(leg.begin(), start);
+  if (*to != goal) leg.push_back(goal);
+  return leg;
+}
+
+/// Tries the whole clearance first, then less, down to none beyond the robot itself.
+Polyline plan_leg_with_fallback(const FloorPlan& plan, const Vector2d& start, const Vector2d& goal,
+                                const RouteParams& params, std::uint64_t seed) {
+  for (const double share : {1.0, 0.5, 0.0}) {
+    const RoomToMove room(plan, params.robot_radius_m + share * params.clearance_m);
+    Polyline leg = plan_leg(room, start, goal, params.iterations, seed);
+    if (!leg.empty()) return leg;
+  }
+  return {};
+}
+
+Route failure(Route route, RouteStatus status, std::size_t leg) {
+  route.status = status;
+  route.leg = leg;
+  return route;
+}
+
+}  // namespace
+
+Route plan_route(const FloorPlan& plan, const std::vector<Vector2d>& waypoints,
+                 const RouteParams& params, std::uint64_t seed) {
+  Route route;
+  route.waypoints = waypoints;
+  const RoomToMove body(plan, params.robot_radius_m);
+  for (std::size_t i = 0; i < waypoints.size(); ++i) {
+    if (body.fits(waypoints[i])) continue;
+    return i == 0 ? failure(route, RouteStatus::start_blocked, 0)
+                  : failure(route, RouteStatus::goal_blocked, i - 1);
+  }
+
+  Polyline points;
+  for (std::size_t i = 0; i + 1 < waypoints.size(); ++i) {
+    const Polyline leg = plan_leg_with_fallback(plan, waypoints[i], waypoints[i + 1], params,
+                                                derive_seed(seed, i));
+    if (leg.empty()) return failure(route, RouteStatus::no_route, i);
+    points.insert(points.end(), leg.begin(), leg.end());
+  }
+  route.path = Path(points).resampled(params.spacing_m);
+  route.status = RouteStatus::found;
+  return route;
+}
+
+}  // namespace vigia::planner

@@ -10,6 +10,8 @@ namespace vigia::servo {
 struct PanTiltServoParams {
   double gain = 4.0;            ///< 1/s, exponential decay of the image error
   bool feed_forward = true;     ///< compensate the base's motion
+  /// A command holds this long, s: the compensation is that of the interval's middle. 0: of now.
+  double hold_s = 0.04;
 };
 
 /// Keeps an image point on the principal point with pan and tilt: ViSP's vpServo, eye in hand, on
@@ -18,11 +20,20 @@ class PanTiltServo {
  public:
   PanTiltServo(HeadGeometry geometry, PanTiltServoParams params);
 
-  /// Pan and tilt rates (rad/s) for the target seen at pixel @p uv at depth @p depth_m.
+  /// Pan and tilt rates (rad/s) for the target seen at pixel @p uv at depth @p depth_m, in metres
+  /// along the optical axis. @p base: the rates at which the base runs while the command holds.
   HeadAngles rates(const Intrinsics& intrinsics, const Eigen::Vector2d& uv, double depth_m,
                    const HeadAngles& head, const BaseRates& base) const;
 
+  /// The feed-forward alone: pan and tilt rates under which the point @p p_c of the camera frame
+  /// (m, z > 0) keeps its image while the base moves, whatever feed_forward says.
+  HeadAngles compensation(const Eigen::Vector3d& p_c, const HeadAngles& head,
+                          const BaseRates& base) const;
+
  private:
+  HeadAngles compensation_now(const Eigen::Vector3d& p_c, const HeadAngles& head,
+                              const BaseRates& base) const;
+
   HeadGeometry geometry_;
   PanTiltServoParams params_;
 };

@@ -1,0 +1,72 @@
+#include "room_to_move.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "vigia/core/angle.hpp"
+
+namespace vigia::planner {
+namespace {
+
+using Eigen::Vector2d;
+
+double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+double point_segment_distance(const Vector2d& p, const Vector2d& a, const Vector2d& b) {
+  const Vector2d ab = b - a;
+  const double length2 = ab.squaredNorm();
+  const double t = length2 > 0.0 ? std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0.0;
+  return (p - a - t * ab).norm();
+}
+
+bool cross_each_other(const Vector2d& a0, const Vector2d& a1, const Vector2d& b0,
+                      const Vector2d& b1) {
+  const Vector2d a = a1 - a0;
+  const Vector2d b = b1 - b0;
+  return cross(a, b0 - a0) * cross(a, b1 - a0) < 0.0 && cross(b, a0 - b0) * cross(b, a1 - b0) < 0.0;
+}
+
+/// Whether the boxes around two segments are farther apart than @p distance.
+bool boxes_apart(const Vector2d& a0, const Vector2d& a1, const Vector2d& b0, const Vector2d& b1,
+                 double distance) {
+  return (a0.cwiseMin(a1).array() > b0.cwiseMax(b1).array() + distance).any() ||
+         (b0.cwiseMin(b1).array() > a0.cwiseMax(a1).array() + distance).any();
+}
+
+}  // namespace
+
+double segment_distance(const Vector2d& a0, const Vector2d& a1, const Vector2d& b0,
+                        const Vector2d& b1) {
+  if (cross_each_other(a0, a1, b0, b1)) return 0.0;
+  return std::min({point_segment_distance(a0, b0, b1), point_segment_distance(a1, b0, b1),
+                   point_segment_distance(b0, a0, a1), point_segment_distance(b1, a0, a1)});
+}
+
+bool RoomToMove::passes(const Vector2d& a, const Vector2d& b) const {
+  const auto& faces = plan_->faces();
+  return std::all_of(faces.begin(), faces.end(), [&](const Wall& face) {
+    return boxes_apart(a, b, face.a, face.b, radius_m_) ||
+           segment_distance(a, b, face.a, face.b) >= radius_m_;
+  });
+}
+
+std::optional<Vector2d> RoomToMove::retreat(const Vector2d& p) const {
+  constexpr double kRingSpacing = 0.05;
+  constexpr int kRings = 20;
+  constexpr int kDirections = 32;
+  const double here = plan_->clearance(p);
+  if (here >= radius_m_) return p;
+  // Rounding must not let the place itself fail.
+  const RoomToMove smaller(*plan_, here - 1e-9);
+  for (int ring = 1; ring <= kRings; ++ring) {
+    for (int k = 0; k < kDirections; ++k) {
+      const double angle = 2.0 * kPi * k / kDirections;
+      const Vector2d q = p + ring * kRingSpacing * Vector2d(std::cos(angle), std::sin(angle));
+      if (fits(q) && smaller.passes(p, q)) return q;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace vigia::planner

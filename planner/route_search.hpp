@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "room_to_move.hpp"
+
+namespace vigia::planner {
+
+/// A polyline from @p start to @p goal along which the disc fits, by OMPL's FMT* on @p samples
+/// states; empty when none was found. A function of its arguments alone, whatever else uses OMPL
+/// and on however many threads.
+std::vector<Eigen::Vector2d> search_route(const RoomToMove& room, const Eigen::Vector2d& start,
+                                          const Eigen::Vector2d& goal, int samples,
+                                          std::uint64_t seed);
+
+}  // namespace vigia::planner
