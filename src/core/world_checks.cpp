@@ -1,0 +1,161 @@
+#include "world_checks.hpp"
+
+#include "plane_geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "vigia/core/angle.hpp"
+
+namespace vigia {
+namespace {
+
+constexpr double kSlack = 1e-6;                   // metres by which the written figures may be off
+const double kFacing = std::cos(from_deg(10.0));  // a mounted landmark's normal follows its wall's
+
+std::string metres(double value) {
+  const double rounded = std::round(value * 1000.0) / 1000.0;
+  std::string text = std::to_string(rounded);
+  text.erase(text.size() - 3);
+  return text + " m";
+}
+
+/// The face that a landmark is mounted on: the nearest one that its normal is square to.
+const Wall* mounting_face(const PlacedLandmark& placed, const FloorPlan& plan) {
+  const Eigen::Vector2d centre = placed.landmark.centre_w().head<2>();
+  const Eigen::Vector2d normal = placed.landmark.normal_w().head<2>();
+  const Wall* best = nullptr;
+  double best_distance = kMountedWithin;
+  for (const Wall& face : plan.faces()) {
+    const Eigen::Vector2d along = (face.b - face.a).normalized();
+    const double distance = distance_to_segment(centre, face.a, face.b);
+    if (distance > best_distance || std::abs(cross(along, normal)) < kFacing) continue;
+    best = &face;
+    best_distance = distance;
+  }
+  return best;
+}
+
+/// Whether a point just in front of the disc lies in the room and outside every solid.
+bool looks_into_the_open(const PlacedLandmark& placed, const FloorPlan& plan) {
+  const Eigen::Vector2d ahead =
+      (placed.landmark.centre_w() + 2.0 * kMountedWithin * placed.landmark.normal_w()).head<2>();
+  if (!inside_polygon(ahead, plan.outline())) return false;
+  return std::none_of(plan.obstacles().begin(), plan.obstacles().end(), [&](const Obstacle& solid) {
+    return placed.landmark.centre_w().z() < solid.height_m && inside_polygon(ahead, solid.polygon);
+  });
+}
+
+/// Whether a wall stands between the disc and a point just in front of it.
+bool lies_behind(const PlacedLandmark& placed, const Wall& face) {
+  const Eigen::Vector2d normal = placed.landmark.normal_w().head<2>();
+  return (placed.landmark.centre_w().head<2>() - face.a).dot(normal) < -1e-3 - kSlack;
+}
+
+void check_in_room(const PlacedLandmark& placed, const FloorPlan& plan) {
+  const Eigen::Vector3d centre = placed.landmark.centre_w();
+  const Eigen::Vector2d spot = centre.head<2>();
+  if (!inside_polygon(spot, plan.outline()) &&
+      distance_to_outline(spot, plan.outline()) > kMountedWithin)
+    throw placed.reader.error("centre_m", "the landmark lies outside the room");
+  for (const Obstacle& solid : plan.obstacles()) {
+    if (centre.z() < solid.height_m && inside_polygon(spot, solid.polygon) &&
+        distance_to_outline(spot, solid.polygon) > kMountedWithin)
+      throw placed.reader.error("centre_m", "the landmark lies inside an obstacle");
+  }
+  const double radius = disc_radius(placed.landmark).value_or(0.0);
+  if (centre.z() - radius < -kSlack)
+    throw placed.reader.error("centre_m", "the disc reaches below the floor");
+  if (centre.z() + radius > plan.ceiling_m() + kSlack)
+    throw placed.reader.error("centre_m",
+                              "the disc reaches above the ceiling at " + metres(plan.ceiling_m()));
+}
+
+void check_fits(const PlacedLandmark& placed, const Wall& face) {
+  const double radius = disc_radius(placed.landmark).value_or(0.0);
+  if (placed.landmark.centre_w().z() + radius > face.height_m + kSlack)
+    throw placed.reader.error("centre_m", "the disc sticks out above its wall, which is " +
+                                              metres(face.height_m) + " high");
+  const Eigen::Vector2d along = face.b - face.a;
+  const double s = (placed.landmark.centre_w().head<2>() - face.a).dot(along.normalized());
+  if (s < radius - kSlack || s > along.norm() - radius + kSlack)
+    throw placed.reader.error("centre_m", "the disc sticks out at the side of its wall, which is " +
+                                              metres(along.norm()) + " long");
+}
+
+}  // namespace
+
+void check_polygon(const std::vector<Eigen::Vector2d>& polygon, const MapReader& reader,
+                   const std::string& key) {
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    if ((polygon[(i + 1) % polygon.size()] - polygon[i]).norm() < kShortestWall)
+      throw reader.error(key, "corner " + std::to_string(i + 1) + " is repeated");
+  }
+  if (const auto sides = crossing_sides(polygon))
+    throw reader.error(key, "the polygon crosses itself: side " + std::to_string(sides->first + 1) +
+                                " meets side " + std::to_string(sides->second + 1));
+}
+
+void check_below_ceiling(double height_m, double ceiling_m, const MapReader& reader) {
+  if (height_m > ceiling_m)
+    throw reader.error(
+        "height_m", "found " + metres(height_m) + ", higher than the room's " + metres(ceiling_m));
+}
+
+void check_segment_in_room(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+                           const std::vector<Eigen::Vector2d>& outline, const MapReader& reader,
+                           const std::string& key) {
+  // Between its crossings with the outline a segment lies wholly inside or wholly outside.
+  std::vector<double> cuts{0.0, 1.0};
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const auto crossing = cross_lines(a, b, outline[i], outline[(i + 1) % outline.size()]);
+    if (crossing && crossing->along_pq > 0.0 && crossing->along_pq < 1.0)
+      cuts.push_back(crossing->along_pq);
+  }
+  std::sort(cuts.begin(), cuts.end());
+  for (std::size_t i = 0; i < cuts.size(); ++i) {
+    const double fractions[] = {cuts[i], i + 1 < cuts.size() ? 0.5 * (cuts[i] + cuts[i + 1]) : 1.0};
+    for (const double t : fractions) {
+      const Eigen::Vector2d p = a + t * (b - a);
+      if (!inside_polygon(p, outline) && distance_to_outline(p, outline) > kSlack)
+        throw reader.error(
+            key, "it reaches outside the room at [" + metres(p.x()) + ", " + metres(p.y()) + "]");
+    }
+  }
+}
+
+void check_mounting(const PlacedLandmark& placed, const FloorPlan& plan) {
+  check_in_room(placed, plan);
+  if (placed.free_standing) return;
+  const Wall* face = mounting_face(placed, plan);
+  if (face == nullptr)
+    throw placed.reader.error(
+        "centre_m",
+        "the landmark is mounted on no wall: none that normal_deg is square to lies "
+        "within " +
+            metres(kMountedWithin) + " (write 'free_standing: true' for one that needs none)");
+  if (!looks_into_the_open(placed, plan) || lies_behind(placed, *face))
+    throw placed.reader.error("normal_deg",
+                              "the landmark looks into the wall that it is mounted on");
+  check_fits(placed, *face);
+}
+
+void check_against_earlier(const std::vector<PlacedLandmark>& placed) {
+  const PlacedLandmark& last = placed.back();
+  for (auto other = placed.begin(); other + 1 != placed.end(); ++other) {
+    if (other->landmark.id == last.landmark.id)
+      throw last.reader.error("id", "the id " + std::to_string(last.landmark.id) +
+                                        " occurs twice; it was given before at " +
+                                        to_string(other->reader.where("id")));
+    const Eigen::Vector3d apart = last.landmark.centre_w() - other->landmark.centre_w();
+    const double radii =
+        disc_radius(last.landmark).value_or(0.0) + disc_radius(other->landmark).value_or(0.0);
+    const bool same_side = last.landmark.normal_w().dot(other->landmark.normal_w()) > 0.0;
+    if (same_side && apart.norm() < radii)
+      throw last.reader.error(
+          "centre_m", "the landmark overlaps landmark " + std::to_string(other->landmark.id));
+  }
+}
+
+}  // namespace vigia
