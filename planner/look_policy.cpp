@@ -73,6 +73,8 @@ std::unique_ptr<LookPolicy> make_look_policy(const std::string& name,
   return nullptr;
 }
 
-std::vector<std::string> look_policy_names() { return {"fixed", "random", "nearest"}; }
+std::vector<std::string> look_policy_names() {
+  return {"fixed", "random", "nearest"};
+}
 
 }  // namespace vigia::planner

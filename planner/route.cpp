@@ -1,10 +1,11 @@
 #include "vigia/planner/route.hpp"
 
+#include "room_to_move.hpp"
+#include "route_search.hpp"
+
 #include <algorithm>
 #include <limits>
 
-#include "room_to_move.hpp"
-#include "route_search.hpp"
 #include "vigia/core/random.hpp"
 
 namespace vigia::planner {
@@ -42,8 +43,8 @@ Polyline straighten(const RoomToMove& room, Polyline points) {
   return points;
 }
 
-Polyline plan_between(const RoomToMove& room, const Vector2d& from, const Vector2d& to,
-                      int samples, std::uint64_t seed) {
+Polyline plan_between(const RoomToMove& room, const Vector2d& from, const Vector2d& to, int samples,
+                      std::uint64_t seed) {
   if (room.passes(from, to)) return {from, to};
   const Polyline found = search_route(room, from, to, samples, seed);
   return found.empty() ? found : straighten(room, found);
@@ -95,8 +96,8 @@ Route plan_route(const FloorPlan& plan, const std::vector<Vector2d>& waypoints,
 
   Polyline points;
   for (std::size_t i = 0; i + 1 < waypoints.size(); ++i) {
-    const Polyline leg = plan_leg_with_fallback(plan, waypoints[i], waypoints[i + 1], params,
-                                                derive_seed(seed, i));
+    const Polyline leg =
+        plan_leg_with_fallback(plan, waypoints[i], waypoints[i + 1], params, derive_seed(seed, i));
     if (leg.empty()) return failure(route, RouteStatus::no_route, i);
     points.insert(points.end(), leg.begin(), leg.end());
   }

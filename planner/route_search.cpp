@@ -69,9 +69,7 @@ class SeededSampler : public ob::StateSampler {
   void sampleUniformNear(ob::State* state, const ob::State*, double) override {
     sampleUniform(state);
   }
-  void sampleGaussian(ob::State* state, const ob::State*, double) override {
-    sampleUniform(state);
-  }
+  void sampleGaussian(ob::State* state, const ob::State*, double) override { sampleUniform(state); }
 
  private:
   std::vector<Vector2d> places_;

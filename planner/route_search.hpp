@@ -1,11 +1,11 @@
 #pragma once
 
+#include "room_to_move.hpp"
+
 #include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>
-
-#include "room_to_move.hpp"
 
 namespace vigia::planner {
 

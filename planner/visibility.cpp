@@ -6,7 +6,9 @@
 namespace vigia::planner {
 namespace {
 
-bool within(double angle, double low, double high) { return angle >= low && angle <= high; }
+bool within(double angle, double low, double high) {
+  return angle >= low && angle <= high;
+}
 
 }  // namespace
 

@@ -1,0 +1,303 @@
+#include "vigia/servo/gaze_controller.hpp"
+
+#include "slew_law.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vigia/core/odometry.hpp"
+
+namespace vigia::servo {
+namespace {
+
+/// A point of the base frame, seen from where the base will be after @p seconds at constant rates.
+Eigen::Vector3d after_motion(const Eigen::Vector3d& p_r, const BaseRates& base, double seconds) {
+  const auto arc = arc_increment(base.v, base.w, Stamp{}, Stamp::from_seconds(seconds));
+  return to_isometry(move(Pose2{}, arc)).inverse() * p_r;
+}
+
+/// Half of the smaller side of the image, px.
+double half_image(const Intrinsics& intrinsics) {
+  return 0.5 * std::min(intrinsics.width, intrinsics.height);
+}
+
+double largest(const HeadAngles& aim, const HeadAngles& head) {
+  return std::max(std::abs(aim.pan - head.pan), std::abs(aim.tilt - head.tilt));
+}
+
+}  // namespace
+
+std::string_view to_string(GazeEvent event) {
+  switch (event) {
+    case GazeEvent::none:
+      return "none";
+    case GazeEvent::acquired:
+      return "acquired";
+    case GazeEvent::released:
+      return "released";
+    case GazeEvent::lost:
+      return "lost";
+    case GazeEvent::expired:
+      return "expired";
+  }
+  return "";
+}
+
+GazeController::GazeController(HeadGeometry geometry, HeadLimits limits, ZoomCalibration zoom,
+                               GazeParams params)
+    : geometry_(std::move(geometry)),
+      limits_(limits),
+      zoom_(std::move(zoom)),
+      params_(params),
+      servo_(geometry_, params_.servo),
+      zoom_control_(params_.zoom) {}
+
+void GazeController::order(const GazeOrder& order) {
+  order_ = order;
+  state_ = GazeState::slew;
+  state_since_.reset();
+  seen_at_r_.reset();
+  zoom_control_ = ZoomControl(params_.zoom);
+}
+
+void GazeController::cancel() {
+  finish(GazeEvent::none);
+}
+
+GazeOutput GazeController::finish(GazeEvent event) {
+  order_.reset();
+  state_ = GazeState::idle;
+  seen_at_r_.reset();
+  GazeOutput output;
+  output.event = event;
+  return output;
+}
+
+void GazeController::enter(GazeState state, Stamp now) {
+  state_ = state;
+  state_since_ = now;
+}
+
+GazeOutput GazeController::step(const GazeInput& input) {
+  carry_target(input);
+  if (!order_) return {};
+  const Landmark* landmark = input.landmarks.find(order_->landmark);
+  if (landmark == nullptr) return finish(GazeEvent::expired);
+  if (!state_since_) state_since_ = input.now;
+
+  const bool asked = state_ != GazeState::slew;
+  if (asked && input.sighting) return watch(input, *landmark);
+
+  const Aim aim = aim_for(input, *landmark);
+  if (state_ == GazeState::track) return miss(input, aim);
+  if (input.now >= order_->expires) return finish(GazeEvent::expired);
+  if (state_ == GazeState::slew) return slew(input, aim);
+  if (state_ == GazeState::search) return search(input, *landmark, aim);
+  return hold(input, aim);
+}
+
+/// Where the landmark was seen, as the base moves on.
+void GazeController::carry_target(const GazeInput& input) {
+  if (seen_at_r_ && last_step_)
+    seen_at_r_ = after_motion(*seen_at_r_, input.base, (input.now - *last_step_).seconds());
+  last_step_ = input.now;
+}
+
+Eigen::Vector3d GazeController::landmark_in_base(const GazeInput& input,
+                                                 const Landmark& landmark) const {
+  // What the camera saw is nearer to the truth than what the belief says.
+  if (seen_at_r_) return *seen_at_r_;
+  return to_isometry(input.belief.pose).inverse() * landmark.centre_w();
+}
+
+/// The same direction within the head's range: the pan nearest to where the head is, and never
+/// through the stop; the end of the range for what lies beyond it.
+HeadAngles GazeController::reachable(const HeadAngles& aim, const HeadAngles& from) const {
+  HeadAngles result;
+  result.pan = std::clamp(aim.pan, limits_.pan_min, limits_.pan_max);
+  double best = std::abs(result.pan - aim.pan) > 1e-9 ? 1e9 : std::abs(result.pan - from.pan);
+  for (const double pan : {aim.pan - 2.0 * kPi, aim.pan + 2.0 * kPi}) {
+    if (pan < limits_.pan_min || pan > limits_.pan_max) continue;
+    if (std::abs(pan - from.pan) >= best) continue;
+    best = std::abs(pan - from.pan);
+    result.pan = pan;
+  }
+  result.tilt = std::clamp(aim.tilt, limits_.tilt_min, limits_.tilt_max);
+  return result;
+}
+
+/// When the slowest of pan, tilt and zoom is there.
+double GazeController::arrival_time(const GazeInput& input, const HeadAngles& aim,
+                                    double focal_px) const {
+  const HeadAngles& head = input.head.angles;
+  const double zoom_error = zoom_.zoom_for_focal(focal_px) - input.head.zoom_mm;
+  return std::max({slew_time(aim.pan - head.pan, limits_.rate, limits_.acceleration),
+                   slew_time(aim.tilt - head.tilt, limits_.rate, limits_.acceleration),
+                   std::abs(zoom_error) / limits_.zoom_rate_mm_s});
+}
+
+/// The focal length at which the landmark has the ordered size, or the shorter one at which it
+/// stays inside the image though belief and head be 3σ off.
+double GazeController::wanted_focal(const GazeInput& input, const Landmark& landmark,
+                                    const Eigen::Vector3d& p_r) const {
+  const Eigen::Vector3d p_h = p_r - geometry_.mount_r;
+  const double range = p_h.norm();
+  // Where a landmark of another shape says nothing of its size, the zoom stays wide.
+  const double radius = disc_radius(landmark).value_or(range);
+
+  // Bearing of the landmark from the head against (x, y, θ) of the base, in the base's axes.
+  const double planar2 = std::max(p_h.head<2>().squaredNorm(), 1e-6);
+  const Eigen::Vector2d across = Eigen::Vector2d(-p_h.y(), p_h.x()) / planar2;
+  const double theta = input.belief.pose.theta;
+  const Eigen::Vector2d across_w(std::cos(theta) * across.x() - std::sin(theta) * across.y(),
+                                 std::sin(theta) * across.x() + std::cos(theta) * across.y());
+  const double lever = across.dot(Eigen::Vector2d(-p_r.y(), p_r.x()));
+  const Eigen::RowVector3d bearing(-across_w.x(), -across_w.y(), -lever);
+  const double variance = (bearing * input.belief.covariance * bearing.transpose()).value();
+  const double sigma =
+      std::hypot(std::sqrt(std::max(variance, 0.0)), from_deg(params_.look_angle_deg));
+
+  const double by_size = order_->radius_px * range / radius;
+  const double spread = std::tan(std::min(3.0 * sigma, 0.4 * kPi)) + radius / range;
+  const double by_field = 0.9 * half_image(input.intrinsics) / spread;
+  return std::clamp(std::min(by_size, by_field), zoom_.samples().front().px,
+                    zoom_.samples().back().px);
+}
+
+GazeController::Aim GazeController::aim_for(const GazeInput& input,
+                                            const Landmark& landmark) const {
+  Aim aim;
+  aim.p_r = landmark_in_base(input, landmark);
+  aim.now = reachable(aim_at(geometry_, aim.p_r), input.head.angles);
+  aim.at_arrival = aim.now;
+  aim.focal_px = wanted_focal(input, landmark, aim.p_r);
+  // The arrival depends on the aim and the aim on the arrival; the second round changes little.
+  for (int round = 0; round < 2; ++round) {
+    const double ahead =
+        std::min(arrival_time(input, aim.at_arrival, aim.focal_px), params_.motion_horizon_s);
+    const Eigen::Vector3d p_r = after_motion(aim.p_r, input.base, ahead);
+    aim.at_arrival = reachable(aim_at(geometry_, p_r), input.head.angles);
+    aim.focal_px = wanted_focal(input, landmark, p_r);
+  }
+  return aim;
+}
+
+bool GazeController::out_of_field(const GazeInput& input, const Aim& aim) const {
+  return largest(aim.now, input.head.angles) >
+         std::atan(half_image(input.intrinsics) / input.intrinsics.px);
+}
+
+/// Rates of head and zoom towards a goal, on top of the compensation for the base's motion.
+HeadRates GazeController::drive(const GazeInput& input, const Aim& aim, const HeadAngles& goal,
+                                double focal_px) const {
+  const double tick = params_.servo.hold_s;
+  const HeadAngles& head = input.head.angles;
+  const SlewLaw law{limits_.rate, limits_.acceleration, params_.aim_gain, tick};
+  // Of the aim, not of where the head is: on its way the head may have the landmark behind it.
+  const Eigen::Vector3d p_c = camera_in_base(geometry_, aim.now).inverse() * aim.p_r;
+  const HeadAngles forward =
+      p_c.z() > 0.0 ? servo_.compensation(p_c, aim.now, input.base) : HeadAngles{};
+  HeadRates rates;
+  rates.angles.pan =
+      std::clamp(law.rate_for(goal.pan - head.pan) + forward.pan, -limits_.rate, limits_.rate);
+  rates.angles.tilt =
+      std::clamp(law.rate_for(goal.tilt - head.tilt) + forward.tilt, -limits_.rate, limits_.rate);
+  rates.zoom_mm_s = std::clamp((zoom_.zoom_for_focal(focal_px) - input.head.zoom_mm) / tick,
+                               -limits_.zoom_rate_mm_s, limits_.zoom_rate_mm_s);
+  return rates;
+}
+
+GazeOutput GazeController::slew(const GazeInput& input, const Aim& aim) {
+  const double focal_now = zoom_.at(input.head.zoom_mm).px;
+  const bool aimed = largest(aim.now, input.head.angles) <= from_deg(params_.settle_deg);
+  const bool zoomed = std::abs(std::log(focal_now / aim.focal_px)) <= params_.settle_focal;
+  if (aimed && zoomed) {
+    enter(GazeState::acquire, input.now);
+    return hold(input, aim);
+  }
+  GazeOutput output;
+  output.command = drive(input, aim, aim.at_arrival, aim.focal_px);
+  return output;
+}
+
+GazeOutput GazeController::hold(const GazeInput& input, const Aim& aim) {
+  if (out_of_field(input, aim)) {
+    enter(GazeState::slew, input.now);
+    return slew(input, aim);
+  }
+  GazeOutput output;
+  output.command = drive(input, aim, aim.now, aim.focal_px);
+  output.request = TrackRequest::acquire;
+  if ((input.now - *state_since_).seconds() >= params_.acquire_s)
+    enter(GazeState::search, input.now);
+  return output;
+}
+
+GazeOutput GazeController::search(const GazeInput& input, const Landmark& landmark,
+                                  const Aim& aim) {
+  const double elapsed = (input.now - *state_since_).seconds();
+  if (elapsed >= params_.search_s) return finish(GazeEvent::expired);
+
+  const double focal_now = zoom_.at(input.head.zoom_mm).px;
+  const double step = from_deg(params_.search_step_deg) * zoom_.samples().front().px / focal_now;
+  const HeadAngles offset = spiral(step, elapsed);
+  HeadAngles goal = aim.now;
+  goal.pan += offset.pan / std::max(std::cos(aim.now.tilt), 0.1);
+  goal.tilt += offset.tilt;
+  goal.pan = std::clamp(goal.pan, limits_.pan_min, limits_.pan_max);
+  goal.tilt = std::clamp(goal.tilt, limits_.tilt_min, limits_.tilt_max);
+
+  const double range = (aim.p_r - geometry_.mount_r).norm();
+  const double smallest = params_.search_radius_px * range / disc_radius(landmark).value_or(range);
+  GazeOutput output;
+  output.command = drive(input, aim, goal, std::min(aim.focal_px, smallest));
+  output.request = TrackRequest::acquire;
+  return output;
+}
+
+GazeOutput GazeController::watch(const GazeInput& input, const Landmark& landmark) {
+  GazeOutput output;
+  last_seen_ = input.now;
+  if (state_ != GazeState::track) {
+    enter(GazeState::track, input.now);
+    zoom_control_ = ZoomControl(params_.zoom);
+    output.event = GazeEvent::acquired;
+  } else if ((input.now - *state_since_).seconds() >= order_->dwell_s) {
+    return finish(GazeEvent::released);
+  }
+
+  const Eigen::Isometry3d rMc = camera_in_base(geometry_, input.head.angles);
+  const Eigen::Isometry3d rMw = to_isometry(input.belief.pose).inverse();
+  const double range = (rMw * landmark.centre_w() - rMc.translation()).norm();
+  const Eigen::Vector2d xy = unproject(input.intrinsics, input.sighting->uv);
+  const Eigen::Vector3d p_c = range * Eigen::Vector3d(xy.x(), xy.y(), 1.0).normalized();
+  seen_at_r_ = rMc * p_c;
+
+  output.command.angles =
+      servo_.rates(input.intrinsics, input.sighting->uv, p_c.z(), input.head.angles, input.base);
+  const double approach = (camera_jacobian_base(geometry_, input.head.angles).row(2) *
+                           Eigen::Vector2d(input.base.v, input.base.w))
+                              .value();
+  output.command.zoom_mm_s =
+      std::clamp(zoom_control_.rate(zoom_, input.head.zoom_mm, input.sighting->radius_px,
+                                    order_->radius_px, -approach / p_c.z()),
+                 -limits_.zoom_rate_mm_s, limits_.zoom_rate_mm_s);
+  output.request = TrackRequest::track;
+  return output;
+}
+
+/// Tracked, but not seen in this frame.
+GazeOutput GazeController::miss(const GazeInput& input, const Aim& aim) {
+  if ((input.now - *state_since_).seconds() >= order_->dwell_s) return finish(GazeEvent::released);
+  GazeOutput output;
+  output.command = drive(input, aim, aim.now, zoom_.at(input.head.zoom_mm).px);
+  output.request = TrackRequest::track;
+  if ((input.now - last_seen_).seconds() >= params_.lost_grace_s) {
+    enter(GazeState::lost, input.now);
+    output.request = TrackRequest::acquire;
+    output.event = GazeEvent::lost;
+  }
+  return output;
+}
+
+}  // namespace vigia::servo

@@ -1,9 +1,8 @@
 #include "vigia/servo/pan_tilt_servo.hpp"
 
+#include <Eigen/Dense>
 #include <visp3/visual_features/vpFeaturePoint.h>
 #include <visp3/vs/vpServo.h>
-
-#include <Eigen/Dense>
 
 namespace vigia::servo {
 namespace {
@@ -60,7 +59,8 @@ HeadAngles PanTiltServo::rates(const Intrinsics& intrinsics, const Eigen::Vector
 HeadAngles PanTiltServo::compensation(const Eigen::Vector3d& p_c, const HeadAngles& head,
                                       const BaseRates& base) const {
   const HeadAngles now = compensation_now(p_c, head, base);
-  // Held over a tick, the rate must be the mean of the interval: to second order that of its middle.
+  // Held over a tick, the rate must be the mean of the interval: to second order that of its
+  // middle.
   const double half = 0.5 * params_.hold_s;
   const Eigen::Matrix<double, 6, 1> twist =
       camera_jacobian_base(geometry_, head) * Eigen::Vector2d(base.v, base.w) +

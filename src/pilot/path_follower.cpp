@@ -1,0 +1,106 @@
+#include "vigia/pilot/path_follower.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace vigia::pilot {
+namespace {
+
+constexpr double kWindow = 0.5;           // m that the station may advance in one step
+constexpr double kCornerReached = 0.02;   // m before a corner at which the turn begins
+constexpr double kAligned = from_deg(4);  // heading error at which a turn on the spot ends
+constexpr double kTurnGain = 3.0;         // 1/s, of the turn's final approach
+constexpr double kShare = 0.7;            // of the acceleration that braking counts on
+
+std::vector<double> stops_of(const Path& path, double corner) {
+  std::vector<double> stops;
+  const auto& points = path.points();
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+    const Eigen::Vector2d in = points[i] - points[i - 1];
+    const Eigen::Vector2d out = points[i + 1] - points[i];
+    const double bend = std::atan2(in.x() * out.y() - in.y() * out.x(), in.dot(out));
+    if (std::abs(bend) > corner) stops.push_back(path.stations()[i]);
+  }
+  stops.push_back(path.length());
+  return stops;
+}
+
+/// The largest rate from which an axis stops within @p distance.
+double braking_rate(double acceleration, double distance) {
+  return std::sqrt(2.0 * kShare * acceleration * std::max(distance, 0.0));
+}
+
+}  // namespace
+
+PathFollower::PathFollower(Path path, BaseLimits limits, PathFollowerParams params)
+    : path_(std::move(path)),
+      limits_(limits),
+      params_(params),
+      stops_(stops_of(path_, from_deg(params.corner_deg))) {}
+
+void PathFollower::advance(const Pose2& estimate) {
+  const Eigen::Vector2d p = estimate.position();
+  station_ = path_.project(p, station_, std::min(station_ + kWindow, stops_[stretch_]));
+  const bool last = stretch_ + 1 == stops_.size();
+  if (!last && stops_[stretch_] - station_ <= kCornerReached) {
+    station_ = stops_[stretch_];
+    ++stretch_;
+    turning_ = true;
+  }
+  if (last && (path_.points().back() - p).norm() <= params_.goal_tolerance_m) {
+    station_ = path_.length();
+    arrived_ = true;
+  }
+}
+
+Eigen::Vector2d PathFollower::pursued(const Pose2& estimate) const {
+  const double stop = stops_[stretch_];
+  const bool last = stretch_ + 1 == stops_.size();
+  Eigen::Vector2d target = path_.at(std::min(station_ + params_.lookahead_m, stop));
+  const double beyond = station_ + params_.lookahead_m - stop;
+  // Short of a corner the line is thought to go on, so that the pursuit stays smooth up to it. At
+  // the path's end there is nothing left to follow but the end itself.
+  if (beyond > 0.0 && !(last && station_ >= stop)) {
+    const double heading = path_.heading(stop - 1e-6);
+    target += beyond * Eigen::Vector2d(std::cos(heading), std::sin(heading));
+  }
+  const Eigen::Vector2d d = target - estimate.position();
+  const double c = std::cos(estimate.theta);
+  const double s = std::sin(estimate.theta);
+  return {c * d.x() + s * d.y(), -s * d.x() + c * d.y()};
+}
+
+BaseRates PathFollower::turn(double error) const {
+  const double rate = std::min({limits_.turn_rate, kTurnGain * std::abs(error),
+                                braking_rate(limits_.turn_acceleration, std::abs(error))});
+  return {0.0, std::copysign(rate, error)};
+}
+
+double PathFollower::speed_limit() const {
+  const double left = stops_[stretch_] - station_;
+  if (stretch_ + 1 < stops_.size())
+    return std::min(limits_.speed, braking_rate(limits_.acceleration, left));
+  // Never so slow that the end is not reached: the last centimetres are the tolerance's.
+  const double floor = params_.goal_tolerance_m;
+  return limits_.speed * std::clamp(std::max(left, floor) / params_.slow_down_m, 0.0, 1.0);
+}
+
+BaseRates PathFollower::step(const Pose2& estimate) {
+  if (!arrived_) advance(estimate);
+  if (arrived_) return {};
+
+  const Eigen::Vector2d target = pursued(estimate);
+  const double error = std::atan2(target.y(), target.x());
+  if (std::abs(error) > from_deg(params_.turn_in_place_deg)) turning_ = true;
+  if (std::abs(error) < kAligned) turning_ = false;
+  if (turning_) return turn(error);
+
+  // Pure pursuit: the arc through the target has the curvature 2y/L².
+  const double curvature = 2.0 * target.y() / std::max(target.squaredNorm(), 1e-4);
+  double v = speed_limit();
+  if (std::abs(curvature) * v > limits_.turn_rate) v = limits_.turn_rate / std::abs(curvature);
+  return {v, v * curvature};
+}
+
+}  // namespace vigia::pilot

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "vigia/core/actuation.hpp"
 #include "vigia/core/path.hpp"
 #include "vigia/core/pose.hpp"
@@ -9,11 +11,16 @@ namespace vigia::pilot {
 struct PathFollowerParams {
   double lookahead_m = 0.35;        ///< distance of the pursued point ahead on the path
   double turn_in_place_deg = 40.0;  ///< heading error above which the base turns on the spot
+  double corner_deg = 20.0;         ///< the path's bends above this are turned on the spot
   double goal_tolerance_m = 0.05;   ///< arrived when the estimate is this near to the path's end
   double slow_down_m = 0.3;         ///< speed falls linearly over this distance before the end
 };
 
 /// Follows a path from the estimated pose: pure pursuit with a turn on the spot at sharp corners.
+///
+/// Corners cut the path into stretches that are driven one after the other. The station never goes
+/// back and never leaves the stretch, so that a path that crosses itself or returns on itself is
+/// followed in its order.
 class PathFollower {
  public:
   PathFollower(Path path, BaseLimits limits, PathFollowerParams params);
@@ -26,9 +33,17 @@ class PathFollower {
   const Path& path() const { return path_; }
 
  private:
+  /// The point to drive towards, in the base frame.
+  Eigen::Vector2d pursued(const Pose2& estimate) const;
+  void advance(const Pose2& estimate);
+  BaseRates turn(double error) const;
+  double speed_limit() const;
+
   Path path_;
   BaseLimits limits_;
   PathFollowerParams params_;
+  std::vector<double> stops_;  ///< stations at which the stretches end, the path's end last
+  std::size_t stretch_ = 0;
   double station_ = 0.0;
   bool turning_ = false;
   bool arrived_ = false;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 
 #include "vigia/core/actuation.hpp"
 #include "vigia/core/belief.hpp"
@@ -14,13 +15,18 @@ namespace vigia::servo {
 struct GazeParams {
   PanTiltServoParams servo;
   ZoomControlParams zoom;
-  double settle_deg = 1.0;      ///< slew ends within this of the aim …
-  double settle_focal = 0.05;   ///< … and within this relative distance of the wanted focal length
-  double lost_grace_s = 0.4;    ///< unseen this long, a tracked target is lost
-  double acquire_s = 1.0;       ///< not found this long at the aim, search begins
-  double search_s = 3.0;        ///< the search spiral ends after this
-  double search_step_deg = 3.0; ///< pitch of the search spiral at the widest zoom's field, scaled
-  double aim_gain = 6.0;        ///< 1/s, of the slew's final approach
+  double settle_deg = 1.0;     ///< slew ends within this of the aim …
+  double settle_focal = 0.05;  ///< … and within this relative distance of the wanted focal length
+  double lost_grace_s = 0.4;   ///< unseen this long, a tracked target is lost
+  double acquire_s = 1.0;      ///< not found this long at the aim, search begins
+  double search_s = 3.0;       ///< the search spiral ends after this
+  double search_step_deg =
+      15.0;  ///< pitch of the search spiral at the widest zoom; ∝ 1/focal length
+  double search_radius_px = 10.0;  ///< searching, the zoom widens until the landmark is this small
+  double aim_gain = 10.0;          ///< 1/s, of the slew's final approach
+  double motion_horizon_s = 1.0;   ///< the base's motion is foreseen for at most this long
+  /// σ of the head's angles, for the zoom at which the landmark is still inside the image.
+  double look_angle_deg = 0.3;
 };
 
 /// What the tracker is asked to do with the next frame.
@@ -35,11 +41,11 @@ struct GazeSighting {
 struct GazeInput {
   Stamp now;
   HeadReading head;
-  BaseRates base;                         ///< by odometry
+  BaseRates base;  ///< by odometry, or better as BaseMotion expects them
   const Belief& belief;
   const LandmarkMap& landmarks;
-  Intrinsics intrinsics;                  ///< calibrated at head.zoom_mm
-  std::optional<GazeSighting> sighting;   ///< found in the frame of this tick
+  Intrinsics intrinsics;                 ///< calibrated at head.zoom_mm
+  std::optional<GazeSighting> sighting;  ///< found in the frame of this tick
 };
 
 enum class GazeEvent { none, acquired, released, lost, expired };
@@ -52,9 +58,24 @@ struct GazeOutput {
   GazeEvent event = GazeEvent::none;
 };
 
-/// Carries out the latest gaze order: slew – acquire – track – lost – search. Head and zoom are sent
-/// to where the landmark will be when they arrive. After dwell_s of tracking the landmark is
-/// released and the gaze is idle; an order that passes its expiry without a feature ends as expired.
+/// Carries out the latest gaze order: slew – acquire – track – lost – search. Head and zoom are
+/// sent to where the landmark will be when they arrive (Armingol §3.1). After dwell_s of tracking
+/// the landmark is released and the gaze is idle; an order that passes its expiry without a feature
+/// ends as expired.
+///
+/// | state   | does                                      | ends |
+/// |---------|-------------------------------------------|-------------------------------------------|
+/// | idle    | head and zoom rest                        | order() → slew | | slew    | head and
+/// zoom go where belief has it      | both there → acquire                      | | acquire | holds
+/// the aim; asks for the landmark      | seen → track; acquire_s → search          | | track   |
+/// servo on the image, zoom holds the size   | dwell_s → released; lost_grace_s → lost   | | lost
+/// | holds the aim where it was last seen      | seen → track; acquire_s → search          | |
+/// search  | spiral about the aim, the zoom widening   | seen → track; search_s → expired |
+///
+/// From acquire and lost the gaze returns to slew when the aim is farther than half the field from
+/// the head (the pan's stop lies between, or the belief has jumped). In every state but track and
+/// idle the order's expiry ends it. Found again after a loss, a landmark is watched for the whole
+/// dwell_s anew.
 class GazeController {
  public:
   GazeController(HeadGeometry geometry, HeadLimits limits, ZoomCalibration zoom, GazeParams params);
@@ -63,18 +84,53 @@ class GazeController {
   void order(const GazeOrder& order);
   /// Drops the order; the head stops and the gaze is idle.
   void cancel();
+  /// One control tick. A sighting counts only when the last output requested one.
   GazeOutput step(const GazeInput& input);
 
   GazeState state() const { return state_; }
   const std::optional<GazeOrder>& current() const { return order_; }
 
  private:
+  /// Where the head should be: the landmark's direction now, and when head and zoom arrive.
+  struct Aim {
+    Eigen::Vector3d p_r;
+    HeadAngles now;
+    HeadAngles at_arrival;
+    double focal_px = 0.0;
+  };
+
+  void carry_target(const GazeInput& input);
+  Eigen::Vector3d landmark_in_base(const GazeInput& input, const Landmark& landmark) const;
+  Aim aim_for(const GazeInput& input, const Landmark& landmark) const;
+  double wanted_focal(const GazeInput& input, const Landmark& landmark,
+                      const Eigen::Vector3d& p_r) const;
+  HeadAngles reachable(const HeadAngles& aim, const HeadAngles& from) const;
+  double arrival_time(const GazeInput& input, const HeadAngles& aim, double focal_px) const;
+  bool out_of_field(const GazeInput& input, const Aim& aim) const;
+
+  GazeOutput slew(const GazeInput& input, const Aim& aim);
+  GazeOutput hold(const GazeInput& input, const Aim& aim);
+  GazeOutput search(const GazeInput& input, const Landmark& landmark, const Aim& aim);
+  GazeOutput watch(const GazeInput& input, const Landmark& landmark);
+  GazeOutput miss(const GazeInput& input, const Aim& aim);
+
+  HeadRates drive(const GazeInput& input, const Aim& aim, const HeadAngles& goal,
+                  double focal_px) const;
+  void enter(GazeState state, Stamp now);
+  GazeOutput finish(GazeEvent event);
+
   HeadGeometry geometry_;
   HeadLimits limits_;
   ZoomCalibration zoom_;
   GazeParams params_;
+  PanTiltServo servo_;
+  ZoomControl zoom_control_;
   GazeState state_ = GazeState::idle;
   std::optional<GazeOrder> order_;
+  std::optional<Stamp> state_since_;  ///< unset until the first step of an order
+  Stamp last_seen_;
+  std::optional<Stamp> last_step_;
+  std::optional<Eigen::Vector3d> seen_at_r_;  ///< where this order's landmark was seen, base frame
 };
 
 }  // namespace vigia::servo
