@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <Eigen/LU>
+
 namespace vigia {
 namespace {
 
