@@ -1,0 +1,232 @@
+#include "drive_layer.hpp"
+
+#include "travel.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <Eigen/Eigenvalues>
+
+namespace vigia::report {
+namespace {
+
+// χ² of two degrees of freedom at 95 %.
+constexpr double kChi2At95 = 5.991464547107979;
+
+std::vector<Eigen::Vector2d> positions(const std::vector<Pose2>& poses) {
+  std::vector<Eigen::Vector2d> points;
+  points.reserve(poses.size());
+  for (const Pose2& pose : poses) points.push_back(pose.position());
+  return points;
+}
+
+std::vector<Eigen::Vector2d> positions(const std::vector<MapPose>& poses) {
+  std::vector<Eigen::Vector2d> points;
+  points.reserve(poses.size());
+  for (const MapPose& each : poses) points.push_back(each.pose.position());
+  return points;
+}
+
+// The instants nearest to every metre of travel, the first metre first.
+std::vector<std::size_t> every_metre(const std::vector<Pose2>& truth) {
+  std::vector<std::size_t> instants;
+  const std::vector<double> travelled = travelled_m(truth);
+  for (std::size_t i = 0; i < travelled.size(); ++i)
+    if (travelled[i] >= static_cast<double>(instants.size()) + 1.0) instants.push_back(i);
+  return instants;
+}
+
+double largest_semi_axis_m(const MapDrive& drive) {
+  double largest = 0.0;
+  for (const std::size_t i : every_metre(drive.truth))
+    largest = std::max(largest, position_sigma_m(drive.estimate[i].covariance));
+  return largest * std::sqrt(kChi2At95);
+}
+
+void draw_sight_lines(const Sheet& sheet, const MapView& view, const MapDrive& drive,
+                      const DriveStyle& style) {
+  for (const MapLook& look : drive.looks) {
+    const Landmark* landmark = drive.world.landmarks.find(look.landmark);
+    if (landmark == nullptr) continue;
+    const Colour colour = landmark_colour(drive.world.landmarks, look.landmark);
+    sheet.line(view(look.from), view(landmark->centre_w().head<2>()),
+               {colour.with_alpha(0.8), style.sight_width,
+                look.fused ? std::vector<double>{} : style.unfused_dashes});
+  }
+}
+
+void draw_paths(const Sheet& sheet, const MapView& view, const MapDrive& drive,
+                const DriveStyle& style) {
+  sheet.polyline(view(drive.planned.points()));
+  sheet.stroke(style.planned);
+  sheet.polyline(view(positions(drive.odometry)));
+  sheet.stroke(style.odometry);
+  sheet.polyline(view(positions(drive.estimate)));
+  sheet.stroke(style.estimate);
+}
+
+void draw_ellipses(const Sheet& sheet, const MapView& view, const MapDrive& drive,
+                   const DriveStyle& style) {
+  if (drive.estimate.empty()) return;
+  const double k = ellipse_scale(drive) * std::sqrt(kChi2At95);
+  for (const std::size_t i : every_metre(drive.truth)) {
+    const MapPose& at = drive.estimate[i];
+    const auto outline =
+        view(ellipse_outline(at.pose.position(), at.covariance.topLeftCorner<2, 2>(), k));
+    sheet.polyline(outline, true);
+    sheet.fill(style.ellipse.colour.with_alpha(style.ellipse_fill));
+    sheet.polyline(outline, true);
+    sheet.stroke(style.ellipse);
+  }
+}
+
+// A chevron along the direction of travel in the middle of every second metre.
+void draw_arrows(const Sheet& sheet, const MapView& view, const std::vector<Pose2>& truth) {
+  const std::vector<double> travelled = travelled_m(truth);
+  double next = 0.5;
+  for (std::size_t i = 1; i < truth.size(); ++i) {
+    if (travelled[i] < next) continue;
+    next += 2.0;
+    const Eigen::Vector2d along = truth[i].position() - truth[i - 1].position();
+    const Eigen::Vector2d u = Eigen::Vector2d(along.x(), -along.y()).normalized();
+    const Eigen::Vector2d left(-u.y(), u.x());
+    const Eigen::Vector2d tip = view(truth[i].position()) + 7.0 * u;
+    const std::vector<Eigen::Vector2d> chevron{tip - 13.0 * u + 8.0 * left, tip,
+                                               tip - 13.0 * u - 8.0 * left};
+    sheet.polyline(chevron);
+    sheet.stroke({palette::kWhite, 5.5});
+    sheet.polyline(chevron);
+    sheet.stroke({palette::kInk, 2.4});
+  }
+}
+
+void draw_robot(const Sheet& sheet, const MapView& view, const Pose2& pose, double radius_m,
+                Colour colour) {
+  const Eigen::Vector2d centre = view(pose.position());
+  const double radius = std::max(6.0, radius_m * view.scale);
+  const Eigen::Vector2d nose(std::cos(pose.theta), -std::sin(pose.theta));
+  sheet.circle(centre, radius);
+  sheet.fill(colour.with_alpha(0.15));
+  sheet.circle(centre, radius);
+  sheet.stroke({colour, 2.2});
+  sheet.line(centre, centre + radius * nose, {colour, 2.2});
+}
+
+void block_tag(LabelPlacer& labels, const Eigen::Vector2d& centre, double radius) {
+  labels.block({centre.x() - radius, centre.y() - radius, 2.0 * radius, 2.0 * radius});
+}
+
+void draw_tag(const Sheet& sheet, LabelPlacer& labels, const std::string& text,
+              const Eigen::Vector2d& anchor, double gap, const Eigen::Vector2d& preferred,
+              const Font& font, Colour colour) {
+  const Eigen::Vector2d size = sheet.text_size(text, font) + Eigen::Vector2d(4.0, 0.0);
+  if (const auto box = labels.place(anchor, size, gap, preferred))
+    sheet.outlined_text(text, {box->x + 0.5 * box->width, box->y + 0.5 * box->height}, font, colour,
+                        palette::kWhite, 2.5, {0.5, 0.5});
+}
+
+void draw_landmarks(const Sheet& sheet, const MapView& view, const MapDrive& drive,
+                    LabelPlacer& labels) {
+  for (const Landmark& landmark : drive.world.landmarks.all()) {
+    draw_landmark(sheet, view, landmark, landmark_colour(drive.world.landmarks, landmark.id));
+    block_tag(labels, view(landmark.centre_w().head<2>()), 9.0);
+  }
+  for (const Landmark& landmark : drive.world.landmarks.all()) {
+    const Eigen::Vector2d behind(-landmark.normal_w().x(), landmark.normal_w().y());
+    const double gap = 4.0 + std::max(7.0, disc_radius(landmark).value_or(0.0) * view.scale);
+    draw_tag(sheet, labels, "L" + std::to_string(landmark.id), view(landmark.centre_w().head<2>()),
+             gap, behind, {17.0, true}, palette::kInk);
+  }
+}
+
+void draw_looks(const Sheet& sheet, const MapView& view, const MapDrive& drive,
+                LabelPlacer& labels) {
+  constexpr double kRadius = 5.0;
+  for (const MapLook& look : drive.looks) block_tag(labels, view(look.from), kRadius);
+  int number = 0;
+  for (const MapLook& look : drive.looks) {
+    const Eigen::Vector2d at = view(look.from);
+    const Colour colour = landmark_colour(drive.world.landmarks, look.landmark);
+    sheet.circle(at, kRadius);
+    sheet.fill(look.fused ? colour : palette::kWhite);
+    sheet.circle(at, kRadius);
+    sheet.stroke({palette::kInk, 1.3});
+    draw_tag(sheet, labels, std::to_string(++number), at, 8.0, {0.0, -1.0}, {13.0}, palette::kInk);
+  }
+}
+
+void draw_ends(const Sheet& sheet, const MapView& view, const MapDrive& drive,
+               LabelPlacer& labels) {
+  if (drive.truth.empty()) return;
+  const double gap = drive.robot_radius_m * view.scale + 4.0;
+  const Eigen::Vector2d start = view(drive.truth.front().position());
+  draw_robot(sheet, view, drive.truth.front(), drive.robot_radius_m, palette::kInk);
+  draw_tag(sheet, labels, "start", start, gap, {0.0, 1.0}, {15.0, true}, palette::kInk);
+  draw_robot(sheet, view, drive.truth.back(), drive.robot_radius_m, palette::kInk);
+  draw_tag(sheet, labels, "end", view(drive.truth.back().position()), gap, {0.0, 1.0}, {15.0, true},
+           palette::kInk);
+  if (drive.planned.empty()) return;
+  const Eigen::Vector2d goal = view(drive.planned.points().back());
+  for (const double turn : {-1.0, 1.0})
+    sheet.line(goal + Eigen::Vector2d(-8.0, -8.0 * turn), goal + Eigen::Vector2d(8.0, 8.0 * turn),
+               {palette::kVermillion, 3.5});
+  draw_tag(sheet, labels, "goal", goal, gap, {1.0, 0.0}, {15.0, true}, palette::kVermillion);
+}
+
+void avoid_paths(LabelPlacer& labels, const MapView& view, const MapDrive& drive) {
+  constexpr double kSpacing = 6.0;
+  for (const auto& path :
+       {positions(drive.truth), positions(drive.odometry), drive.planned.points()}) {
+    Eigen::Vector2d last(-1e9, -1e9);
+    for (const Eigen::Vector2d& p : view(path)) {
+      if ((p - last).norm() < kSpacing) continue;
+      labels.avoid(p);
+      last = p;
+    }
+  }
+}
+
+}  // namespace
+
+double ellipse_scale(const MapDrive& drive) {
+  if (drive.ellipse_scale > 0.0) return drive.ellipse_scale;
+  constexpr double kWanted_m = 0.5;
+  const double largest = drive.estimate.empty() ? 0.0 : largest_semi_axis_m(drive);
+  double chosen = 1.0;
+  for (const double scale : {2.0, 5.0, 10.0, 20.0, 50.0})
+    if (scale * largest <= kWanted_m && largest > 0.0) chosen = scale;
+  return chosen;
+}
+
+std::vector<Eigen::Vector2d> ellipse_outline(const Eigen::Vector2d& p,
+                                             const Eigen::Matrix2d& covariance, double k) {
+  constexpr int kPoints = 64;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(covariance);
+  const Eigen::Vector2d axes = k * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  std::vector<Eigen::Vector2d> outline;
+  for (int i = 0; i < kPoints; ++i) {
+    const double t = 2.0 * M_PI * i / kPoints;
+    outline.emplace_back(p + solver.eigenvectors() *
+                                 Eigen::Vector2d(axes.x() * std::cos(t), axes.y() * std::sin(t)));
+  }
+  return outline;
+}
+
+void draw_drive(const Sheet& sheet, const MapView& view, const MapDrive& drive,
+                const DriveStyle& style) {
+  const Sheet::Clip clip = sheet.clip(view.box());
+  LabelPlacer labels(view.box());
+  avoid_paths(labels, view, drive);
+  draw_sight_lines(sheet, view, drive, style);
+  sheet.polyline(view(positions(drive.truth)));
+  sheet.stroke(style.truth);
+  draw_ellipses(sheet, view, drive, style);
+  draw_paths(sheet, view, drive, style);
+  draw_arrows(sheet, view, drive.truth);
+  draw_landmarks(sheet, view, drive, labels);
+  draw_ends(sheet, view, drive, labels);
+  draw_looks(sheet, view, drive, labels);
+}
+
+}  // namespace vigia::report
