@@ -1,0 +1,8 @@
+#pragma once
+
+namespace vigia::localization {
+
+/// The value that a χ² variable of @p dof degrees of freedom stays below with probability @p p.
+double chi_square_quantile(double p, double dof);
+
+}  // namespace vigia::localization
