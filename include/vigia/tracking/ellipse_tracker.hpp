@@ -29,8 +29,8 @@ struct EllipseFeature {
   FeatureStatus status = FeatureStatus::not_found;
   Ellipse ellipse;
   Eigen::Matrix<double, 5, 5> covariance = Eigen::Matrix<double, 5, 5>::Identity();
-  double contrast = 0.0;    ///< ground minus disc, grey levels; negative: bright on dark
-  double score = 0.0;       ///< tracker's own quality in [0, 1]
+  double contrast = 0.0;  ///< ground minus disc, grey levels; negative: bright on dark
+  double score = 0.0;     ///< tracker's own quality in [0, 1]
 };
 
 /// Where the image of a landmark is expected.

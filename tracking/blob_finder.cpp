@@ -1,0 +1,253 @@
+#include "blob_finder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "vigia/core/angle.hpp"
+
+namespace vigia::tracking {
+namespace {
+
+constexpr int kLag = 3;             // px over which an edge falls or rises
+constexpr int kGroundDistance = 3;  // px outside a chord's end where the ground's level is read
+constexpr int kSameThreshold = 12;  // fills this close in threshold give the same blob
+
+double median_of_five(std::array<double, 5> values) {
+  std::nth_element(values.begin(), values.begin() + 2, values.end());
+  return values[2];
+}
+
+}  // namespace
+
+const std::vector<Blob>& BlobFinder::find(const vpImage<unsigned char>& image,
+                                          const imaging::Window& window) {
+  image_ = &image;
+  window_ = window;
+  blobs_.clear();
+  thresholds_.clear();
+  const std::size_t pixels = image.getSize();
+  if (taken_.size() != pixels || first_fill_ + fills_ > 0x7fffffffU) {
+    taken_.assign(pixels, 0);
+    first_fill_ = 1;
+    fills_ = 0;
+  }
+  first_fill_ += fills_;
+  fills_ = 0;
+  falling_.assign(static_cast<std::size_t>(window.width) + 8, 0);
+  rising_.assign(static_cast<std::size_t>(window.width) + 8, 0);
+  for (int v = window.v + parameters_.row_step / 2; v < window.bottom(); v += parameters_.row_step)
+    scan_row(v);
+  return blobs_;
+}
+
+// Pairs falling edges with the next rising edge.
+void BlobFinder::scan_row(int v) {
+  const unsigned char* row = image_->operator[](static_cast<unsigned>(v)) + window_.u;
+  const int count = window_.width - kLag;
+  const auto threshold = static_cast<unsigned char>(parameters_.min_contrast);
+  unsigned char* falling = falling_.data();
+  unsigned char* rising = rising_.data();
+  for (int u = 0; u < count; ++u) {
+    const unsigned char here = row[u];
+    const unsigned char there = row[u + kLag];
+    const auto fall = static_cast<unsigned char>(std::max(here, there) - there);
+    const auto rise = static_cast<unsigned char>(std::max(here, there) - here);
+    falling[u] = fall >= threshold ? 1 : 0;
+    rising[u] = rise >= threshold ? 1 : 0;
+  }
+
+  int first_fall = -1;
+  int last_fall = -1;
+  for (int u = 0; u < count;) {
+    std::uint64_t falls = 0;
+    std::uint64_t rises = 0;
+    std::memcpy(&falls, falling + u, sizeof falls);
+    std::memcpy(&rises, rising + u, sizeof rises);
+    if ((falls | rises) == 0) {
+      u += static_cast<int>(sizeof falls);
+      continue;
+    }
+    if (falling[u] != 0) {
+      const int start = u;
+      while (u < count && falling[u] != 0) ++u;
+      last_fall = (start + u - 1 + kLag + 1) / 2;
+      if (first_fall < 0) first_fall = last_fall;
+    } else if (rising[u] != 0) {
+      const int start = u;
+      while (u < count && rising[u] != 0) ++u;
+      const int rise = (start + u - 1 + kLag) / 2;
+      if (last_fall >= 0) consider({v, window_.u + last_fall, window_.u + rise});
+      // An edge inside the disc may have hidden the outline.
+      if (first_fall >= 0 && last_fall - first_fall > 2)
+        consider({v, window_.u + first_fall, window_.u + rise});
+      first_fall = last_fall = -1;
+    } else {
+      ++u;
+    }
+  }
+}
+
+void BlobFinder::consider(const Chord& chord) {
+  if (chord.last - chord.first < parameters_.min_axis_px) return;
+  Seed seed;
+  if (make_seed(chord, seed)) fill(seed);
+}
+
+// How many steps of (du, dv) stay below the threshold; one lighter pixel alone is noise.
+int BlobFinder::reach(int u, int v, int du, int dv, int threshold, int limit) const {
+  int steps = 0;
+  for (int k = 1; k <= limit; ++k) {
+    const int uk = u + k * du;
+    const int vk = v + k * dv;
+    if (uk < window_.u || uk >= window_.right() || vk < window_.v || vk >= window_.bottom()) break;
+    if (at(uk, vk) < threshold)
+      steps = k;
+    else if (k - steps >= 2)
+      break;
+  }
+  return steps;
+}
+
+bool BlobFinder::make_seed(const Chord& chord, Seed& seed) const {
+  const int length = chord.last - chord.first + 1;
+  const int u = (chord.first + chord.last) / 2;
+  const int v = chord.v;
+  std::array<double, 5> samples{};
+  for (int k = 0; k < 5; ++k)
+    samples[static_cast<std::size_t>(k)] = at(u + (k - 2) * std::max(1, length / 8), v);
+  seed.disc = median_of_five(samples);
+  const int left = std::max(window_.u, chord.first - kGroundDistance);
+  const int right = std::min(window_.right() - 1, chord.last + kGroundDistance);
+  seed.ground = std::min(at(left, v), at(right, v));
+  if (seed.ground - seed.disc < parameters_.min_contrast) return false;
+  seed.threshold = static_cast<int>(0.5 * (seed.disc + seed.ground));
+  seed.u = u;
+  seed.v = v;
+  if (at(u, v) >= seed.threshold) return false;
+  const std::uint32_t taker =
+      taken_[static_cast<std::size_t>(v) * image_->getWidth() + static_cast<std::size_t>(u)];
+  if (taker >= first_fill_ &&
+      std::abs(thresholds_[taker - first_fill_] - seed.threshold) <= kSameThreshold)
+    return false;
+
+  // The crossing chord, then the chord through its middle.
+  const int tallest = static_cast<int>(length / parameters_.min_axis_ratio) * 2 + 8;
+  const int up = reach(u, v, 0, -1, seed.threshold, tallest);
+  const int down = reach(u, v, 0, 1, seed.threshold, tallest);
+  const int height = up + down + 1;
+  if (up == tallest || down == tallest || height < 1.6 * parameters_.min_axis_px) return false;
+  const int middle = v + (down - up) / 2;
+  const int widest = static_cast<int>(height / parameters_.min_axis_ratio) * 2 + 8;
+  const int before = reach(u, middle, -1, 0, seed.threshold, widest);
+  const int behind = reach(u, middle, 1, 0, seed.threshold, widest);
+  const int width = before + behind + 1;
+  if (before == widest || behind == widest || width < 1.6 * parameters_.min_axis_px) return false;
+  const double flat = 0.7 * parameters_.min_axis_ratio;
+  if (width < flat * height || height < flat * width) return false;
+
+  // The rectangle round a slanting ellipse is larger than its upright chords by up to this much.
+  const double ratio = parameters_.min_axis_ratio;
+  const double slant = 0.5 * (1.0 + ratio * ratio) / ratio;
+  const int half_width = static_cast<int>(slant * 0.6 * width * 1.15) + 4;
+  const int half_height = static_cast<int>(slant * 0.6 * height * 1.15) + 4;
+  const int u_middle = u + (behind - before) / 2;
+  seed.limit = {u_middle - half_width, middle - half_height, 2 * half_width + 1,
+                2 * half_height + 1};
+  return true;
+}
+
+// Takes the run of dark pixels through (u, v). False when it leaves the limit.
+bool BlobFinder::add_run(int u, int v, const Seed& seed) {
+  const unsigned char* row = image_->operator[](static_cast<unsigned>(v));
+  int first = u;
+  int last = u;
+  while (first > window_.u && row[first - 1] < seed.threshold) --first;
+  while (last + 1 < window_.right() && row[last + 1] < seed.threshold) ++last;
+  const std::uint32_t number = first_fill_ + fills_;
+  std::uint32_t* taken = taken_.data() + static_cast<std::size_t>(v) * image_->getWidth();
+  std::fill(taken + first, taken + last + 1, number);
+  runs_.push_back({v, first, last});
+  open_.push_back({v, first, last});
+  return first >= seed.limit.u && last < seed.limit.right() && v >= seed.limit.v &&
+         v < seed.limit.bottom();
+}
+
+void BlobFinder::fill(const Seed& seed) {
+  const std::uint32_t number = first_fill_ + fills_;
+  open_.clear();
+  runs_.clear();
+  thresholds_.push_back(seed.threshold);
+  bool within = add_run(seed.u, seed.v, seed);
+  while (within && !open_.empty()) {
+    const Run run = open_.back();
+    open_.pop_back();
+    for (int v = run.v - 1; within && v <= run.v + 1; v += 2) {
+      if (v < window_.v || v >= window_.bottom()) continue;
+      const unsigned char* row = image_->operator[](static_cast<unsigned>(v));
+      const std::uint32_t* taken = taken_.data() + static_cast<std::size_t>(v) * image_->getWidth();
+      for (int u = run.first; within && u <= run.last; ++u)
+        if (row[u] < seed.threshold && taken[u] != number) within = add_run(u, v, seed);
+    }
+  }
+  ++fills_;
+  if (!within) return;
+
+  // Moments about the seed; the sum of squares of a run in closed form.
+  double m00 = 0.0;
+  double m10 = 0.0;
+  double m01 = 0.0;
+  double m20 = 0.0;
+  double m11 = 0.0;
+  double m02 = 0.0;
+  int left = seed.u;
+  int right = seed.u;
+  int top = seed.v;
+  int bottom = seed.v;
+  for (const Run& run : runs_) {
+    const double n = run.last - run.first + 1;
+    const double middle = 0.5 * (run.first + run.last) - seed.u;
+    const double v = run.v - seed.v;
+    m00 += n;
+    m10 += n * middle;
+    m01 += n * v;
+    m20 += n * (middle * middle + (n * n - 1.0) / 12.0);
+    m11 += n * middle * v;
+    m02 += n * v * v;
+    left = std::min(left, run.first);
+    right = std::max(right, run.last);
+    top = std::min(top, run.v);
+    bottom = std::max(bottom, run.v);
+  }
+  Blob blob;
+  blob.box = {left, top, right - left + 1, bottom - top + 1};
+  blob.area = m00;
+  blob.disc = seed.disc;
+  blob.ground = seed.ground;
+  blob.cut = left <= window_.u || top <= window_.v || right >= window_.right() - 1 ||
+             bottom >= window_.bottom() - 1;
+  const double mean_u = m10 / m00;
+  const double mean_v = m01 / m00;
+  blob.ellipse.centre << seed.u + mean_u, seed.v + mean_v;
+  // A solid ellipse has Σ = 4 × its second moments.
+  blob.ellipse.sigma << m20 / m00 - mean_u * mean_u, m11 / m00 - mean_u * mean_v,
+      m11 / m00 - mean_u * mean_v, m02 / m00 - mean_v * mean_v;
+  blob.ellipse.sigma *= 4.0;
+  const double determinant = blob.ellipse.sigma.determinant();
+  if (determinant <= 0.0) return;
+  blob.fill = blob.area / (kPi * std::sqrt(determinant));
+
+  std::vector<std::pair<int, int>> span(static_cast<std::size_t>(blob.box.height), {right, left});
+  for (const Run& run : runs_) {
+    auto& [first, last] = span[static_cast<std::size_t>(run.v - top)];
+    first = std::min(first, run.first);
+    last = std::max(last, run.last);
+  }
+  double spanned = 0.0;
+  for (const auto& [first, last] : span) spanned += last - first + 1;
+  blob.solidity = blob.area / spanned;
+  blobs_.push_back(blob);
+}
+
+}  // namespace vigia::tracking

@@ -1,0 +1,371 @@
+#include "edge_fit.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "vigia/core/angle.hpp"
+
+namespace vigia::tracking {
+namespace {
+
+constexpr double kMinBlur = 0.29;  // px: the pixel's own integration, 1/√12
+constexpr double kMaxBlur = 6.0;
+constexpr double kMinAxis = 1.5;  // px
+constexpr double kQuantisationVariance = 1.0 / 12.0;
+
+// Φ and φ of the normal distribution, tabulated; linear in between (error below 1e-5).
+class NormalTable {
+ public:
+  static constexpr float kLimit = 4.5F;
+  static constexpr int kPerUnit = 64;
+
+  NormalTable() {
+    for (int i = 0; i < kSize; ++i) {
+      const double t = static_cast<double>(i) / kPerUnit - static_cast<double>(kLimit);
+      values_[static_cast<std::size_t>(i)] = {
+          static_cast<float>(0.5 * std::erfc(-t / std::sqrt(2.0))),
+          static_cast<float>(std::exp(-0.5 * t * t) / std::sqrt(2.0 * kPi))};
+    }
+  }
+
+  struct Value {
+    float integral;
+    float density;
+  };
+
+  Value at(float t) const {
+    const float place = (std::clamp(t, -kLimit, kLimit) + kLimit) * kPerUnit;
+    const int index = std::min(static_cast<int>(place), kSize - 2);
+    const float rest = place - static_cast<float>(index);
+    const Value& low = values_[static_cast<std::size_t>(index)];
+    const Value& high = values_[static_cast<std::size_t>(index) + 1];
+    return {low.integral + rest * (high.integral - low.integral),
+            low.density + rest * (high.density - low.density)};
+  }
+
+ private:
+  static constexpr int kSize = 2 * 288 + 1;
+  std::array<Value, kSize> values_{};
+};
+
+const NormalTable& normal_table() {
+  static const NormalTable table;
+  return table;
+}
+
+// Where the row v cuts the ellipse: the half length of the chord and its middle.
+struct Chord {
+  double middle;
+  double half;  // negative: no cut
+};
+
+Chord chord_of(const EllipseShape& shape, double v) {
+  const double dv = v - shape.centre.y();
+  const double p = shape.sigma(0, 0);
+  const double q = shape.sigma(0, 1);
+  const double r = shape.sigma(1, 1);
+  const double inside = 1.0 - dv * dv / r;
+  if (inside < 0.0) return {0.0, -1.0};
+  return {shape.centre.x() + q / r * dv, std::sqrt((p - q * q / r) * inside)};
+}
+
+// The ellipse of the same directions with both axes longer by @p margin (shorter if negative).
+EllipseShape grown(const EllipseShape& shape, double margin) {
+  Ellipse ellipse = ellipse_of(shape);
+  ellipse.a += margin;
+  ellipse.b += margin;
+  return shape_of(ellipse);
+}
+
+bool is_ellipse(const EllipseShape& shape) {
+  return shape.sigma.allFinite() && shape.centre.allFinite() && shape.sigma.determinant() > 0.0 &&
+         shape.sigma(0, 0) > 0.0 && ellipse_of(shape).b >= kMinAxis;
+}
+
+}  // namespace
+
+void EdgeFitter::collect(const vpImage<unsigned char>& image, const imaging::Window& bounds) {
+  band_shape_ = shape_;
+  band_blur_ = profile_.blur;
+  const double half_width = parameters_.band_blurs * profile_.blur + 0.5;
+  const Ellipse ellipse = ellipse_of(shape_);
+  const EllipseShape outer = grown(shape_, half_width);
+  const bool has_hole = ellipse.b > half_width + 0.5;
+  const EllipseShape inner = has_hole ? grown(shape_, -half_width) : shape_;
+
+  const double area =
+      kPi * ((ellipse.a + half_width) * (ellipse.b + half_width) -
+             (has_hole ? (ellipse.a - half_width) * (ellipse.b - half_width) : 0.0));
+  const int thinning = std::max(1, static_cast<int>(std::ceil(area / parameters_.max_pixels)));
+  const auto capacity = static_cast<Eigen::Index>(1.1 * area / thinning + 256.0);
+  if (u_.size() < capacity) {
+    u_.resize(capacity);
+    v_.resize(capacity);
+    grey_.resize(capacity);
+    residual_.resize(capacity);
+    t_.resize(capacity);
+    work_.resize(capacity, 6);
+    jacobian_.resize(capacity, kUnknowns);
+    sector_.resize(static_cast<std::size_t>(capacity));
+  }
+
+  complete_ = true;
+  count_ = 0;
+  const imaging::Window rows = window_round(outer, 0.0);
+  for (int v = rows.v; v < rows.bottom(); ++v) {
+    const Chord whole = chord_of(outer, v);
+    if (whole.half < 0.0) continue;
+    const int first = static_cast<int>(std::ceil(whole.middle - whole.half));
+    const int last = static_cast<int>(std::floor(whole.middle + whole.half));
+    if (last < first) continue;
+    if (v < bounds.v || v >= bounds.bottom() || first < bounds.u || last >= bounds.right())
+      complete_ = false;
+    if (v < bounds.v || v >= bounds.bottom()) continue;
+    const unsigned char* row = image[static_cast<unsigned>(v)];
+    const Chord hole = has_hole ? chord_of(inner, v) : Chord{0.0, -1.0};
+    const int hole_first =
+        hole.half < 0.0 ? last + 1 : static_cast<int>(std::ceil(hole.middle - hole.half));
+    const int hole_last =
+        hole.half < 0.0 ? last : static_cast<int>(std::floor(hole.middle + hole.half));
+    const auto take = [&](int from, int to) {
+      from = std::max(from, bounds.u);
+      to = std::min(to, bounds.right() - 1);
+      // A fixed pattern over the image, so that thinning picks no direction of the outline.
+      if (thinning > 1) {
+        const int phase = (from + 2 * v) % thinning;
+        if (phase != 0) from += thinning - phase;
+      }
+      for (int u = from; u <= to && count_ < capacity; u += thinning) {
+        u_[count_] = static_cast<float>(u - band_shape_.centre.x());
+        v_[count_] = static_cast<float>(v - band_shape_.centre.y());
+        grey_[count_] = static_cast<float>(row[u]);
+        ++count_;
+      }
+    };
+    take(first, std::min(last, hole_first - 1));
+    take(std::max(first, hole_last + 1), last);
+  }
+}
+
+void EdgeFitter::evaluate() {
+  const auto n = static_cast<Eigen::Index>(count_);
+  const double determinant = shape_.sigma.determinant();
+  const auto a11 = static_cast<float>(shape_.sigma(1, 1) / determinant);
+  const auto a12 = static_cast<float>(-shape_.sigma(0, 1) / determinant);
+  const auto a22 = static_cast<float>(shape_.sigma(0, 0) / determinant);
+  const Eigen::Vector2f shift = (shape_.centre - band_shape_.centre).cast<float>();
+  const auto blur = static_cast<float>(profile_.blur);
+  const auto contrast = static_cast<float>(profile_.ground - profile_.disc);
+  const auto ground = static_cast<float>(profile_.ground);
+  const auto inverse_determinant = static_cast<float>(1.0 / determinant);
+
+  auto x = work_.col(0).head(n);
+  auto y = work_.col(1).head(n);
+  auto nx = work_.col(2).head(n);
+  auto ny = work_.col(3).head(n);
+  auto slope = work_.col(4).head(n);
+  auto d = work_.col(5).head(n);
+  x = u_.head(n) - shift.x();
+  y = v_.head(n) - shift.y();
+
+  // The first-order distance to the outline, then once more from the foot point that it leads to:
+  // third order in distance times curvature.
+  const auto gradient_at = [&] {
+    nx = a11 * x + a12 * y;
+    ny = a12 * x + a22 * y;
+    slope = (nx.square() + ny.square()).sqrt().max(1e-9F).inverse();
+    auto& level = t_;
+    level.head(n) = (x * nx + y * ny).sqrt();
+    t_.head(n) = (1.0F - level.head(n)) * level.head(n) * slope;
+    nx *= slope;
+    ny *= slope;
+  };
+  gradient_at();
+  d = t_.head(n);
+  x += d * nx;
+  y += d * ny;
+  gradient_at();
+  d += t_.head(n);
+
+  // h = support function of the outline at its normal, curvature = h³/det Σ.
+  auto& h = slope;
+  h = (x * nx + y * ny).max(0.1F);
+  auto curvature = x;
+  curvature = h.cube() * inverse_determinant;
+  t_.head(n) = (d - (0.5F * blur * blur) * curvature) * (1.0F / blur);
+
+  auto density = y;
+  const NormalTable& table = normal_table();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const NormalTable::Value value = table.at(t_[i]);
+    jacobian_(i, 6) = -value.integral;
+    density[i] = value.density;
+  }
+  residual_.head(n) = grey_.head(n) - ground - contrast * jacobian_.col(6).head(n);
+
+  // ∂g/∂d, then the outline's movement with centre and Σ: ∂d/∂c = n, ∂d/∂Σ = n nᵀ/(2h).
+  jacobian_.col(7).head(n) = (contrast / blur) * density * (t_.head(n) + blur * curvature);
+  density *= -contrast / blur;
+  jacobian_.col(0).head(n) = density * nx;
+  jacobian_.col(1).head(n) = density * ny;
+  density *= h.inverse();
+  jacobian_.col(2).head(n) = (0.5F * density) * nx.square();
+  jacobian_.col(3).head(n) = density * nx * ny;
+  jacobian_.col(4).head(n) = (0.5F * density) * ny.square();
+}
+
+void EdgeFitter::accumulate(Normal& normal, Vector& gradient) const {
+  const auto n = static_cast<Eigen::Index>(count_);
+  for (int i = 0; i < kUnknowns; ++i) {
+    // Column 5 is ∂g/∂G = 1 and never stored.
+    const auto column = jacobian_.col(i).head(n).matrix();
+    gradient[i] = i == 5 ? static_cast<double>(residual_.head(n).sum())
+                         : static_cast<double>(column.dot(residual_.head(n).matrix()));
+    for (int j = 0; j <= i; ++j) {
+      double sum = 0.0;
+      if (i == 5 && j == 5)
+        sum = count_;
+      else if (i == 5)
+        sum = static_cast<double>(jacobian_.col(j).head(n).sum());
+      else if (j == 5)
+        sum = static_cast<double>(column.sum());
+      else
+        sum = static_cast<double>(column.dot(jacobian_.col(j).head(n).matrix()));
+      normal(i, j) = normal(j, i) = sum;
+    }
+  }
+}
+
+// Applies one Gauss–Newton step, shortened where it is out of proportion. False when the ellipse
+// is gone.
+bool EdgeFitter::step(const Normal& normal, const Vector& gradient) {
+  Vector delta = normal.ldlt().solve(gradient);
+  if (!delta.allFinite()) return false;
+  const double limit = 1.5 + 0.5 * profile_.blur;
+  const Ellipse ellipse = ellipse_of(shape_);
+  const double movement =
+      std::max({delta.head<2>().norm(), 0.5 * delta.segment<3>(2).norm() / (ellipse.b + 1e-9)});
+  if (movement > limit) delta *= limit / movement;
+  shape_.centre += delta.head<2>();
+  shape_.sigma(0, 0) += delta[2];
+  shape_.sigma(0, 1) += delta[3];
+  shape_.sigma(1, 0) += delta[3];
+  shape_.sigma(1, 1) += delta[4];
+  profile_.ground += delta[5];
+  profile_.disc = profile_.ground - (profile_.ground - delta[5] - profile_.disc + delta[6]);
+  profile_.blur = std::clamp(profile_.blur + std::clamp(delta[7], -0.5, 0.5), kMinBlur, kMaxBlur);
+  return is_ellipse(shape_);
+}
+
+bool EdgeFitter::iterate(const vpImage<unsigned char>& image, const imaging::Window& bounds) {
+  constexpr double kRest = 0.01;  // px: Gauss–Newton's next step is then its square
+  for (int iteration = 0; iteration < parameters_.max_iterations; ++iteration) {
+    const EllipseShape before = shape_;
+    Normal normal;
+    Vector gradient;
+    evaluate();
+    accumulate(normal, gradient);
+    if (!step(normal, gradient)) return false;
+    const double axis = ellipse_of(shape_).b;
+    const double moved = std::max((shape_.centre - before.centre).norm(),
+                                  0.5 * (shape_.sigma - before.sigma).norm() / axis);
+    if (moved < kRest) return true;
+    const double drifted = (shape_.centre - band_shape_.centre).norm() +
+                           0.5 * (shape_.sigma - band_shape_.sigma).norm() / axis;
+    if (drifted > 0.4 * profile_.blur || profile_.blur > 1.25 * band_blur_) collect(image, bounds);
+    if (count_ < 4 * kUnknowns) return false;
+  }
+  return false;
+}
+
+// Leaves out the pixels of the sectors that disagree; the share of the outline that stays.
+double EdgeFitter::drop_bad_sectors() {
+  evaluate();
+  const double l11 = std::sqrt(shape_.sigma(0, 0));
+  const double l21 = shape_.sigma(0, 1) / l11;
+  const double l22 = std::sqrt(shape_.sigma(1, 1) - l21 * l21);
+  const Eigen::Vector2d shift = shape_.centre - band_shape_.centre;
+  std::array<double, kSectors> square{};
+  std::array<int, kSectors> pixels{};
+  for (int i = 0; i < count_; ++i) {
+    const double x = (static_cast<double>(u_[i]) - shift.x()) / l11;
+    const double y = (static_cast<double>(v_[i]) - shift.y() - l21 * x) / l22;
+    // A substitute for the angle that needs no atan2: 0..4 once round.
+    const double turn = y / (std::abs(x) + std::abs(y) + 1e-12);
+    const double angle = x >= 0.0 ? 1.0 + turn : 3.0 - turn;
+    const auto index = static_cast<std::size_t>(
+        std::clamp(static_cast<int>(angle * (kSectors / 4.0)), 0, kSectors - 1));
+    sector_[static_cast<std::size_t>(i)] = static_cast<unsigned char>(index);
+    square[index] += static_cast<double>(residual_[i]) * static_cast<double>(residual_[i]);
+    ++pixels[index];
+  }
+  std::array<double, kSectors> sorted{};
+  for (std::size_t k = 0; k < kSectors; ++k) {
+    square[k] = pixels[k] > 0 ? square[k] / pixels[k] : 0.0;
+    sorted[k] = square[k];
+  }
+  std::nth_element(sorted.begin(), sorted.begin() + kSectors / 2, sorted.end());
+  const double contrast = profile_.ground - profile_.disc;
+  const double noise_limit = parameters_.sector_noise_ratio * parameters_.sector_noise_ratio *
+                             std::max(sorted[kSectors / 2], kQuantisationVariance);
+  const double contrast_limit = std::pow(parameters_.sector_contrast_ratio * contrast, 2);
+  const double limit = std::max(noise_limit, contrast_limit);
+
+  int good = 0;
+  for (std::size_t k = 0; k < kSectors; ++k) good += pixels[k] > 0 && square[k] <= limit ? 1 : 0;
+  if (good < kSectors) {
+    int kept = 0;
+    for (int i = 0; i < count_; ++i) {
+      if (square[sector_[static_cast<std::size_t>(i)]] > limit) continue;
+      u_[kept] = u_[i];
+      v_[kept] = v_[i];
+      grey_[kept] = grey_[i];
+      ++kept;
+    }
+    count_ = kept;
+  }
+  return static_cast<double>(good) / kSectors;
+}
+
+EdgeFit EdgeFitter::fit(const vpImage<unsigned char>& image, const imaging::Window& bounds,
+                        const EllipseShape& start, const EdgeProfile& profile) {
+  EdgeFit result;
+  if (!is_ellipse(start)) return result;
+  shape_ = start;
+  profile_ = profile;
+  profile_.blur = std::clamp(profile.blur, kMinBlur, kMaxBlur);
+  collect(image, bounds);
+  if (count_ < 4 * kUnknowns || !iterate(image, bounds)) return result;
+
+  result.agreement = drop_bad_sectors();
+  if (result.agreement < 1.0) {
+    // Without the bad sectors the ellipse moves; no new band, or they would be back.
+    for (int iteration = 0; iteration < 3; ++iteration) {
+      Normal normal;
+      Vector gradient;
+      evaluate();
+      accumulate(normal, gradient);
+      if (count_ < 4 * kUnknowns || !step(normal, gradient)) return result;
+    }
+    evaluate();
+  }
+  Normal normal;
+  Vector gradient;
+  accumulate(normal, gradient);
+  const double squares = static_cast<double>(residual_.head(count_).matrix().squaredNorm());
+  const double variance = std::max(squares / (count_ - kUnknowns), kQuantisationVariance);
+  const Normal covariance = variance * normal.ldlt().solve(Normal::Identity());
+  result.converged = covariance.allFinite() && is_ellipse(shape_);
+  result.shape = shape_;
+  result.covariance = covariance.topLeftCorner<5, 5>();
+  result.covariance = 0.5 * (result.covariance + result.covariance.transpose()).eval();
+  result.profile = profile_;
+  result.noise = std::sqrt(variance);
+  result.complete = complete_;
+  return result;
+}
+
+}  // namespace vigia::tracking

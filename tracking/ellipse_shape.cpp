@@ -1,0 +1,89 @@
+#include "ellipse_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vigia/core/angle.hpp"
+
+namespace vigia::tracking {
+namespace {
+
+// Variance of an angle that is uniform over half a turn.
+const double kUniformAngleVariance = kPi * kPi / 12.0;
+
+}  // namespace
+
+EllipseShape shape_of(const Ellipse& ellipse) {
+  const double c = std::cos(ellipse.psi);
+  const double s = std::sin(ellipse.psi);
+  const double aa = ellipse.a * ellipse.a;
+  const double bb = ellipse.b * ellipse.b;
+  EllipseShape shape;
+  shape.centre << ellipse.u, ellipse.v;
+  const double mixed = (aa - bb) * c * s;
+  shape.sigma << aa * c * c + bb * s * s, mixed, mixed, aa * s * s + bb * c * c;
+  return shape;
+}
+
+Ellipse ellipse_of(const EllipseShape& shape) {
+  const double p = shape.sigma(0, 0);
+  const double q = shape.sigma(0, 1);
+  const double r = shape.sigma(1, 1);
+  const double mean = 0.5 * (p + r);
+  const double radius = std::hypot(0.5 * (p - r), q);
+  double psi = radius > 0.0 ? 0.5 * std::atan2(2.0 * q, p - r) : 0.0;
+  if (psi <= -kPi / 2.0) psi += kPi;
+  return {shape.centre.x(), shape.centre.y(), std::sqrt(mean + radius),
+          std::sqrt(std::max(0.0, mean - radius)), psi};
+}
+
+Eigen::Vector2d half_extent(const EllipseShape& shape) {
+  return {std::sqrt(shape.sigma(0, 0)), std::sqrt(shape.sigma(1, 1))};
+}
+
+imaging::Window window_round(const EllipseShape& shape, double margin) {
+  const Eigen::Vector2d half = half_extent(shape) + Eigen::Vector2d::Constant(margin);
+  const int left = static_cast<int>(std::floor(shape.centre.x() - half.x()));
+  const int top = static_cast<int>(std::floor(shape.centre.y() - half.y()));
+  const int right = static_cast<int>(std::ceil(shape.centre.x() + half.x()));
+  const int bottom = static_cast<int>(std::ceil(shape.centre.y() + half.y()));
+  return {left, top, right - left + 1, bottom - top + 1};
+}
+
+EllipseEstimate estimate_of(const EllipseShape& shape,
+                            const Eigen::Matrix<double, 5, 5>& covariance) {
+  EllipseEstimate estimate;
+  Ellipse& e = estimate.ellipse;
+  e = ellipse_of(shape);
+  const double c = std::cos(e.psi);
+  const double s = std::sin(e.psi);
+
+  // dΣ seen from the axes: along a, along b, and across (which turns them).
+  Eigen::Matrix<double, 5, 5> jacobian = Eigen::Matrix<double, 5, 5>::Identity();
+  jacobian.row(2) << 0.0, 0.0, c * c, 2.0 * c * s, s * s;
+  jacobian.row(3) << 0.0, 0.0, s * s, -2.0 * c * s, c * c;
+  jacobian.row(4) << 0.0, 0.0, -c * s, c * c - s * s, c * s;
+  jacobian.row(2) /= 2.0 * e.a;
+  jacobian.row(3) /= 2.0 * e.b;
+  jacobian.row(4) /= e.a + e.b;  // now px: (a − b) dψ
+  Eigen::Matrix<double, 5, 5>& out = estimate.covariance;
+  out = jacobian * covariance * jacobian.transpose();
+
+  const double across_variance = out(4, 4);
+  const double half_difference = 0.5 * (e.a - e.b);
+  const double mean = 0.5 * (e.a + e.b);
+  const double unbiased =
+      std::sqrt(std::max(0.0, half_difference * half_difference - across_variance));
+  e.a = mean + unbiased;
+  e.b = mean - unbiased;
+
+  const double difference = 2.0 * half_difference;
+  const double psi_variance =
+      1.0 / (difference * difference / across_variance + 1.0 / kUniformAngleVariance);
+  const double scale = std::sqrt(psi_variance / across_variance);
+  out.row(4) *= scale;
+  out.col(4) *= scale;
+  return estimate;
+}
+
+}  // namespace vigia::tracking
