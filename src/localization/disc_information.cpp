@@ -1,0 +1,46 @@
+#include "vigia/localization/disc_information.hpp"
+
+#include <cmath>
+
+#include <Eigen/Cholesky>
+
+#include "vigia/localization/ekf_state.hpp"
+
+namespace vigia::localization {
+namespace {
+
+/// The sensor of a head that aims at the landmark with the zoom that shows it as wanted.
+SensorSnapshot aimed_sensor(const HeadGeometry& geometry, const ZoomCalibration& zoom,
+                            const Eigen::Vector3d& p_r, double focal_per_metre) {
+  SensorSnapshot sensor;
+  sensor.head = aim_at(geometry, p_r);
+  const double range = (camera_in_base(geometry, sensor.head).translation() - p_r).norm();
+  sensor.zoom_mm = zoom.zoom_for_focal(focal_per_metre * range);
+  sensor.intrinsics = zoom.at(sensor.zoom_mm);
+  return sensor;
+}
+
+bool fits(const Intrinsics& intrinsics, const DiscMeasurement& image) {
+  return in_image(intrinsics, image.z.head<2>(), std::exp(image.z(2)));
+}
+
+}  // namespace
+
+std::optional<Eigen::Matrix3d> DiscInformation::look_information(const Landmark& landmark,
+                                                                 const Pose2& pose) const {
+  const auto radius = disc_radius(landmark);
+  if (!radius) return std::nullopt;
+  const Eigen::Vector3d p_r = to_isometry(pose).inverse() * landmark.centre_w();
+  const SensorSnapshot sensor = aimed_sensor(geometry_, zoom_, p_r, params_.radius_px / *radius);
+  const auto image = predict_disc(landmark, sensor, geometry_, pose, {});
+  if (!image || !fits(sensor.intrinsics, *image)) return std::nullopt;
+
+  const double size_sigma = params_.pixel_sigma / std::exp(image->z(2));
+  const Eigen::Vector3d sigma(params_.pixel_sigma, params_.pixel_sigma, size_sigma);
+  Eigen::Matrix3d S = sigma.cwiseAbs2().asDiagonal();
+  S += image->dz_dbias * look_covariance(params_.sensor) * image->dz_dbias.transpose();
+  S += reading_covariance(*image, params_.sensor) / params_.frames_per_look;
+  return image->dz_dpose.transpose() * S.llt().solve(image->dz_dpose);
+}
+
+}  // namespace vigia::localization
