@@ -1,0 +1,158 @@
+#include "vigia/sim/robot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace vigia::sim {
+namespace {
+
+constexpr double kStepWhileAccelerating = 0.005;  // s
+
+struct AxisStep {
+  double rate;
+  double distance;
+};
+
+/// A rate that runs to its target with bounded acceleration for @p h seconds, exactly.
+AxisStep ramp(double rate, double target, double acceleration, double h) {
+  const double ramp_s = std::min(h, std::abs(target - rate) / acceleration);
+  const double reached =
+      ramp_s < h ? target : rate + std::copysign(acceleration * h, target - rate);
+  return {reached, 0.5 * (rate + reached) * ramp_s + reached * (h - ramp_s)};
+}
+
+/// Moves one angle of the head and stops it at the ends of its range.
+void move_axis(double& angle, double& rate, const AxisStep& step, double low, double high) {
+  const double wanted = angle + step.distance;
+  angle = std::clamp(wanted, low, high);
+  const bool stopped = (angle == low && step.rate < 0.0) || (angle == high && step.rate > 0.0);
+  rate = stopped ? 0.0 : step.rate;
+}
+
+Pose2 along_arc(const Pose2& pose, double distance, double turn) {
+  const double half = 0.5 * turn;
+  const double sinc = std::abs(half) < 1e-6 ? 1.0 - half * half / 6.0 : std::sin(half) / half;
+  const double chord = distance * sinc;
+  return {pose.x + chord * std::cos(pose.theta + half),
+          pose.y + chord * std::sin(pose.theta + half), wrap_angle(pose.theta + turn)};
+}
+
+double clamp_rate(double rate, double limit) {
+  return std::clamp(rate, -limit, limit);
+}
+
+}  // namespace
+
+Robot::Robot(const RobotParams& params, const Pose2& start, double zoom_mm, std::uint64_t seed)
+    : params_(params),
+      zoom_min_mm_(-std::numeric_limits<double>::infinity()),
+      zoom_max_mm_(std::numeric_limits<double>::infinity()),
+      odometry_pose_(start),
+      odometry_random_(seed, "odometry"),
+      look_random_(seed, "look"),
+      reading_random_(seed, "head reading") {
+  truth_.pose = start;
+  truth_.zoom_mm = zoom_mm;
+  const HeadLimits& limits = params_.head_limits;
+  truth_.head.pan = std::clamp(0.0, limits.pan_min, limits.pan_max);
+  truth_.head.tilt = std::clamp(0.0, limits.tilt_min, limits.tilt_max);
+  Robot::init();
+}
+
+void Robot::set_zoom_range(double min_mm, double max_mm) {
+  zoom_min_mm_ = min_mm;
+  zoom_max_mm_ = max_mm;
+  truth_.zoom_mm = std::clamp(truth_.zoom_mm, min_mm, max_mm);
+}
+
+void Robot::command(const BaseRates& base, const HeadRates& head) {
+  const BaseLimits& limits = params_.base;
+  const HeadLimits& head_limits = params_.head_limits;
+  base_command_ = {clamp_rate(base.v, limits.speed), clamp_rate(base.w, limits.turn_rate)};
+  head_command_.angles = {clamp_rate(head.angles.pan, head_limits.rate),
+                          clamp_rate(head.angles.tilt, head_limits.rate)};
+  head_command_.zoom_mm_s = clamp_rate(head.zoom_mm_s, head_limits.zoom_rate_mm_s);
+}
+
+void Robot::advance(Duration dt) {
+  double left = dt.seconds();
+  while (left > 0.0) {
+    const bool steady = truth_.base.v == base_command_.v && truth_.base.w == base_command_.w &&
+                        truth_.head_rates.pan == head_command_.angles.pan &&
+                        truth_.head_rates.tilt == head_command_.angles.tilt;
+    const double h = steady ? left : std::min(left, kStepWhileAccelerating);
+    step(h);
+    left -= h;
+  }
+  truth_.stamp = truth_.stamp + dt;
+}
+
+void Robot::step(double h) {
+  const BaseLimits& base = params_.base;
+  const HeadLimits& head = params_.head_limits;
+
+  const AxisStep drive = ramp(truth_.base.v, base_command_.v, base.acceleration, h);
+  const AxisStep turn = ramp(truth_.base.w, base_command_.w, base.turn_acceleration, h);
+  truth_.base = {drive.rate, turn.rate};
+  truth_.pose = along_arc(truth_.pose, drive.distance, turn.distance);
+  turned_ += turn.distance;
+
+  const HeadAngles& rates = truth_.head_rates;
+  const AxisStep pan = ramp(rates.pan, head_command_.angles.pan, head.acceleration, h);
+  const AxisStep tilt = ramp(rates.tilt, head_command_.angles.tilt, head.acceleration, h);
+  move_axis(truth_.head.pan, truth_.head_rates.pan, pan, head.pan_min, head.pan_max);
+  move_axis(truth_.head.tilt, truth_.head_rates.tilt, tilt, head.tilt_min, head.tilt_max);
+  truth_.zoom_mm =
+      std::clamp(truth_.zoom_mm + head_command_.zoom_mm_s * h, zoom_min_mm_, zoom_max_mm_);
+}
+
+void Robot::begin_look() {
+  const SensorNoise& noise = params_.sensor;
+  truth_.look_angle_error.pan = noise.look_angle * look_random_.normal();
+  truth_.look_angle_error.tilt = noise.look_angle * look_random_.normal();
+  truth_.look_log_focal_error = noise.look_focal * look_random_.normal();
+}
+
+OdometryIncrement Robot::read_odometry() {
+  const Pose2 moved = compose(inverse(odometry_pose_), truth_.pose);
+  OdometryIncrement u{odometry_stamp_, truth_.stamp, 0.0, 0.0, 0.0};
+  const double chord = std::hypot(moved.x, moved.y);
+  if (chord > 1e-9) {
+    const double bearing = std::atan2(moved.y, moved.x);
+    const bool backward = std::cos(bearing - 0.5 * turned_) < 0.0;
+    u.trans = backward ? -chord : chord;
+    u.rot1 = backward ? wrap_angle(bearing + kPi) : bearing;
+  } else {
+    u.rot1 = 0.5 * turned_;
+  }
+  u.rot2 = turned_ - u.rot1;
+
+  const Eigen::Matrix3d covariance = control_covariance(u, params_.odometry);
+  u.rot1 += std::sqrt(covariance(0, 0)) * odometry_random_.normal();
+  u.trans += std::sqrt(covariance(1, 1)) * odometry_random_.normal();
+  u.rot2 += std::sqrt(covariance(2, 2)) * odometry_random_.normal();
+
+  odometry_stamp_ = truth_.stamp;
+  odometry_pose_ = truth_.pose;
+  turned_ = 0.0;
+  return u;
+}
+
+HeadReading Robot::read_head() {
+  HeadReading reading;
+  const double white = params_.sensor.reading_angle;
+  reading.angles.pan =
+      truth_.head.pan - truth_.look_angle_error.pan - white * reading_random_.normal();
+  reading.angles.tilt =
+      truth_.head.tilt - truth_.look_angle_error.tilt - white * reading_random_.normal();
+  reading.rates = truth_.head_rates;
+  reading.zoom_mm = truth_.zoom_mm;
+  return reading;
+}
+
+Eigen::Isometry3d Robot::camera_pose() const {
+  return to_isometry(truth_.pose) * camera_in_base(params_.head, truth_.head);
+}
+
+}  // namespace vigia::sim

@@ -1,0 +1,369 @@
+#include "vigia/sim/scene.hpp"
+
+#include "decal.hpp"
+#include "pixel_noise.hpp"
+#include "simd.hpp"
+#include "surface.hpp"
+#include "texture.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "vigia/core/random.hpp"
+#include "vigia/sim/appearance.hpp"
+
+namespace vigia::sim {
+namespace {
+
+using imaging::Window;
+
+constexpr int kTile = 16;
+constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
+
+/// The first surface of @p surfaces among the faces that carries a picture of this frame.
+std::size_t face_under(const std::vector<Surface>& surfaces, const Eigen::Isometry3d& wMd,
+                       double tolerance_m) {
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    const Surface& surface = surfaces[i];
+    const Eigen::Vector3d normal = surface.axis_s.cross(surface.axis_t);
+    if (std::abs(normal.dot(wMd.linear().col(2))) < 0.99) continue;
+    const Eigen::Vector3d offset = wMd.translation() - surface.origin_w;
+    if (std::abs(normal.dot(offset)) > tolerance_m) continue;
+    if (surface.corners_w.empty()) return i;
+    const double s = surface.axis_s.dot(offset);
+    const double t = surface.axis_t.dot(offset);
+    double s_end = 0.0;
+    double t_end = 0.0;
+    for (const Eigen::Vector3d& corner : surface.corners_w) {
+      s_end = std::max(s_end, surface.axis_s.dot(corner - surface.origin_w));
+      t_end = std::max(t_end, surface.axis_t.dot(corner - surface.origin_w));
+    }
+    if (s >= 0.0 && s <= s_end && t >= 0.0 && t <= t_end) return i;
+  }
+  return kNowhere;
+}
+
+DecalShape shape_of(ClutterKind kind) {
+  switch (kind) {
+    case ClutterKind::ellipse:
+      return DecalShape::ellipse;
+    case ClutterKind::ring:
+      return DecalShape::ring;
+    case ClutterKind::square:
+      return DecalShape::square;
+    case ClutterKind::half_disc:
+      return DecalShape::half_disc;
+    case ClutterKind::blob:
+      break;
+  }
+  return DecalShape::blob;
+}
+
+Eigen::Isometry3d frame_of(const Clutter& clutter) {
+  Eigen::Isometry3d wMd = clutter.on_floor
+                              ? Eigen::Isometry3d(Eigen::Translation3d(clutter.centre_w))
+                              : wall_mount(clutter.centre_w, clutter.normal_yaw);
+  return wMd * Eigen::AngleAxisd(clutter.turn, Eigen::Vector3d::UnitZ());
+}
+
+VIGIA_PIXEL_LOOP
+void row_rays(float x0, float dx, float y, float kdu, int u, int count, float* __restrict out_x,
+              float* __restrict out_y) {
+  for (int i = 0; i < count; ++i) {
+    const float x = x0 + static_cast<float>(u + i) * dx;
+    const float scale = 1.0F + kdu * (x * x + y * y);
+    out_x[i] = x * scale;
+    out_y[i] = y * scale;
+  }
+}
+
+VIGIA_PIXEL_LOOP
+void mix(const float* __restrict share, float grey, int count, float* __restrict row) {
+  for (int i = 0; i < count; ++i) row[i] += share[i] * (grey - row[i]);
+}
+
+VIGIA_PIXEL_LOOP
+void keep_where(const ViewId* __restrict winner, ViewId id, int count, float* __restrict share) {
+  for (int i = 0; i < count; ++i) share[i] = winner[i] == id ? share[i] : 0.0F;
+}
+
+VIGIA_PIXEL_LOOP
+void take_where(const ViewId* __restrict winner, ViewId id, const float* __restrict grey, int count,
+                float* __restrict row) {
+  for (int i = 0; i < count; ++i) row[i] = winner[i] == id ? grey[i] : row[i];
+}
+
+}  // namespace
+
+struct Scene::Impl {
+  Impl(const WorldMap& world, const Appearance& look, std::uint64_t noise_seed)
+      : seed(noise_seed),
+        light(static_cast<float>(look.light)),
+        tile(derive_seed(look.seed, "noise tile")),
+        surfaces(building_surfaces(world.plan, look)) {
+    for (const Clutter& clutter : look.clutter) {
+      Decal mark{shape_of(clutter.kind),
+                 frame_of(clutter),
+                 clutter.size_m,
+                 static_cast<float>(clutter.grey),
+                 false,
+                 0};
+      mark.surface = face_under(surfaces, mark.wMd, 0.02);
+      if (mark.surface != kNowhere) decals.push_back(mark);
+    }
+    for (const Landmark& landmark : world.landmarks.all()) hang(landmark, look);
+  }
+
+  /// A landmark's sheet and disc, on the face under it or on a board of its own.
+  void hang(const Landmark& landmark, const Appearance& look) {
+    const auto radius = disc_radius(landmark);
+    if (!radius) return;
+    const double half_width = *radius * look.plate_factor;
+    std::size_t under = face_under(surfaces, landmark.wMl, 0.02);
+    if (under == kNowhere) {
+      under = surfaces.size();
+      surfaces.push_back(board_surface(
+          landmark.wMl, 1.1 * half_width,
+          obstacle_material(look.obstacle_grey, look.contrast, derive_seed(look.seed, under))));
+    }
+    const bool square = look.plate_shape == PlateShape::square;
+    decals.push_back({square ? DecalShape::square_plate : DecalShape::disc, landmark.wMl,
+                      half_width, static_cast<float>(look.plate_grey), true, under});
+    decals.push_back(
+        {DecalShape::disc, landmark.wMl, *radius, static_cast<float>(look.disc_grey), true, under});
+  }
+
+  std::uint64_t seed;
+  float light;
+  NoiseTile tile;
+  std::vector<Surface> surfaces;
+  std::vector<Decal> decals;  ///< in the order in which they are painted
+};
+
+namespace {
+
+/// Neighbouring tiles of one row of tiles that see the same surfaces.
+struct Run {
+  int u0;
+  int u1;
+  bool pure;
+  std::vector<ViewId> views;
+};
+
+}  // namespace
+
+/// One exposure. The arithmetic of a pixel depends on its (u, v), on the tile of the frame's grid
+/// that it lies in, and on the exposure; never on the window.
+class SceneFrame : public imaging::Frame {
+ public:
+  SceneFrame(const Scene::Impl& scene, const Eigen::Isometry3d& wMc, const Intrinsics& intrinsics,
+             Stamp stamp, const ImagingParams& params)
+      : scene_(scene),
+        wMc_(wMc),
+        intrinsics_(intrinsics),
+        params_(params),
+        noise_(scene.seed, stamp) {}
+
+  int width() const override { return intrinsics_.width; }
+  int height() const override { return intrinsics_.height; }
+
+  void read_grey(const Window& window, unsigned char* out, std::ptrdiff_t stride) const override {
+    render(window, [&](int v, Row& row) {
+      paint_decals(window.u, v, window.width, row, row.grey.data());
+      finish(row.grey.data(), window.u, v, 0, window.width, out + (v - window.v) * stride);
+    });
+  }
+
+  void read_colour(const Window& window, vpRGBa* out, std::ptrdiff_t stride) const override {
+    const auto count = static_cast<std::size_t>(window.width);
+    std::vector<float> channel(count);
+    std::vector<unsigned char> bytes(count);
+    render(window, [&](int v, Row& row) {
+      vpRGBa* pixels = out + (v - window.v) * stride;
+      for (int c = 0; c < 3; ++c) {
+        tint(row, c, channel);
+        paint_decals(window.u, v, window.width, row, channel.data());
+        finish(channel.data(), window.u, v, params_.colour ? c : 0, window.width, bytes.data());
+        for (std::size_t i = 0; i < count; ++i) {
+          (c == 0 ? pixels[i].R : c == 1 ? pixels[i].G : pixels[i].B) = bytes[i];
+          pixels[i].A = vpRGBa::alpha_default;
+        }
+      }
+    });
+  }
+
+ private:
+  struct Row {
+    explicit Row(int count)
+        : x(static_cast<std::size_t>(count)), y(x), grey(x), other(x), depth(x), winner(x.size()) {}
+    std::vector<float> x, y, grey, other, depth;
+    std::vector<ViewId> winner;
+  };
+
+  /// Finds what the exposure sees. Done when the first pixel is asked for.
+  void prepare() const {
+    prepared_ = true;
+    const Eigen::Isometry3d cMw = wMc_.inverse(Eigen::Isometry);
+    const RayBox whole = ray_box(intrinsics_, 0, intrinsics_.width - 1, 0, intrinsics_.height - 1);
+    std::vector<SurfaceView> all;
+    std::vector<ViewId> every;
+    for (std::size_t i = 0; i < scene_.surfaces.size(); ++i) {
+      SurfaceView view;
+      if (!make_view(scene_.surfaces[i], cMw, intrinsics_.px, view)) continue;
+      view.index = i;
+      every.push_back(static_cast<ViewId>(all.size()));
+      all.push_back(view);
+    }
+    std::vector<ViewId> seen;
+    bool pure = false;
+    visible_in(all, every, whole, seen, pure);
+    view_of_surface_.assign(scene_.surfaces.size(), -1);
+    for (const ViewId id : seen) {
+      view_of_surface_[all[id].index] = static_cast<int>(views_.size());
+      views_.push_back(all[id]);
+    }
+    for (const Decal& decal : scene_.decals) {
+      if (view_of_surface_[decal.surface] < 0) continue;
+      DecalView view(decal, cMw, intrinsics_, params_.blur_px);
+      if (!view.box().empty()) decals_.push_back(std::move(view));
+    }
+  }
+
+  template <typename Finish>
+  void render(const Window& window, Finish finish_row) const {
+    if (window.empty()) return;
+    if (!prepared_) prepare();
+    Row row(window.width);
+    for (int v = window.v; v < window.bottom();) {
+      const int tile_v = v / kTile * kTile;
+      const std::vector<Run> runs = runs_of(window, tile_v);
+      for (; v < std::min(window.bottom(), tile_v + kTile); ++v) {
+        paint_surfaces(window.u, v, window.width, runs, row);
+        finish_row(v, row);
+      }
+    }
+  }
+
+  std::vector<Run> runs_of(const Window& window, int tile_v) const {
+    std::vector<ViewId> every(views_.size());
+    for (std::size_t i = 0; i < every.size(); ++i) every[i] = static_cast<ViewId>(i);
+    std::vector<ViewId> near_row;
+    bool pure = false;
+    const int last_v = tile_v + kTile - 1;
+    visible_in(
+        views_, every,
+        ray_box(intrinsics_, window.u / kTile * kTile, window.right() + kTile, tile_v, last_v),
+        near_row, pure);
+    std::vector<Run> runs;
+    std::vector<ViewId> visible;
+    for (int u = window.u / kTile * kTile; u < window.right(); u += kTile) {
+      visible_in(views_, near_row, ray_box(intrinsics_, u, u + kTile - 1, tile_v, last_v), visible,
+                 pure);
+      const int u0 = std::max(u, window.u);
+      const int u1 = std::min(u + kTile, window.right());
+      if (!runs.empty() && runs.back().pure == pure && runs.back().views == visible)
+        runs.back().u1 = u1;
+      else
+        runs.push_back({u0, u1, pure, visible});
+    }
+    return runs;
+  }
+
+  void paint_surfaces(int u, int v, int count, const std::vector<Run>& runs, Row& row) const {
+    row_rays(static_cast<float>(-intrinsics_.u0 / intrinsics_.px),
+             static_cast<float>(1.0 / intrinsics_.px),
+             static_cast<float>((v - intrinsics_.v0) / intrinsics_.py),
+             static_cast<float>(intrinsics_.kdu), u, count, row.x.data(), row.y.data());
+    for (const Run& run : runs) {
+      const int first = run.u0 - u;
+      const int length = run.u1 - run.u0;
+      if (run.pure) {
+        std::fill_n(row.winner.data() + first, length, run.views.front());
+        shade(views_[run.views.front()], scene_.tile.data(), row.x.data() + first,
+              row.y.data() + first, length, row.grey.data() + first);
+      } else {
+        paint_mixed(run, first, length, row);
+      }
+    }
+  }
+
+  void paint_mixed(const Run& run, int first, int length, Row& row) const {
+    constexpr ViewId kNone = 0xffff;
+    ViewId* winner = row.winner.data() + first;
+    std::fill_n(winner, length, kNone);
+    std::fill_n(row.depth.data() + first, length, 0.0F);
+    std::fill_n(row.grey.data() + first, length, 0.0F);
+    for (const ViewId id : run.views)
+      take_nearest(views_[id], id, row.x.data() + first, row.y.data() + first, length,
+                   row.depth.data() + first, winner);
+    for (const ViewId id : run.views) {
+      ViewId* begin = std::find(winner, winner + length, id);
+      if (begin == winner + length) continue;
+      ViewId* end = winner + length;
+      while (*(end - 1) != id) --end;
+      const auto from = begin - winner + first;
+      const int n = static_cast<int>(end - begin);
+      shade(views_[id], scene_.tile.data(), row.x.data() + from, row.y.data() + from, n,
+            row.other.data() + from);
+      take_where(begin, id, row.other.data() + from, n, row.grey.data() + from);
+    }
+  }
+
+  void paint_decals(int u, int v, int count, Row& row, float* grey) const {
+    for (DecalView& decal : decals_) {
+      const Window& box = decal.box();
+      if (v < box.v || v >= box.bottom()) continue;
+      const int from = std::max(u, box.u);
+      const int n = std::min(u + count, box.right()) - from;
+      if (n <= 0) continue;
+      const int at = from - u;
+      const auto id = static_cast<ViewId>(view_of_surface_[decal.decal().surface]);
+      decal.coverage(from, v, n, row.other.data() + at);
+      keep_where(row.winner.data() + at, id, n, row.other.data() + at);
+      mix(row.other.data() + at, decal.decal().grey, n, grey + at);
+    }
+  }
+
+  void tint(const Row& row, int channel, std::vector<float>& out) const {
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const bool tinted = params_.colour && row.winner[i] < views_.size();
+      out[i] =
+          row.grey[i] *
+          (tinted ? views_[row.winner[i]].material->tint[static_cast<std::size_t>(channel)] : 1.0F);
+    }
+  }
+
+  void finish(float* grey, int u, int v, int channel, int count, unsigned char* out) const {
+    if (scene_.light != 1.0F)
+      for (int i = 0; i < count; ++i) grey[i] *= scene_.light;
+    noise_.add_and_round(grey, static_cast<float>(params_.noise_sigma), u, v, channel, count, out);
+  }
+
+  const Scene::Impl& scene_;
+  Eigen::Isometry3d wMc_;
+  Intrinsics intrinsics_;
+  ImagingParams params_;
+  PixelNoise noise_;
+  mutable bool prepared_ = false;
+  mutable std::vector<SurfaceView> views_;
+  mutable std::vector<int> view_of_surface_;
+  mutable std::vector<DecalView> decals_;
+};
+
+Scene::Scene(const WorldMap& world, std::shared_ptr<const Appearance> appearance,
+             std::uint64_t seed)
+    : impl_(std::make_unique<Impl>(world, appearance ? *appearance : Appearance{},
+                                   derive_seed(seed, "pixel noise"))) {}
+
+Scene::~Scene() = default;
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+
+std::unique_ptr<imaging::Frame> Scene::expose(const Eigen::Isometry3d& wMc,
+                                              const Intrinsics& intrinsics, Stamp stamp,
+                                              const ImagingParams& params) const {
+  return std::make_unique<SceneFrame>(*impl_, wMc, intrinsics, stamp, params);
+}
+
+}  // namespace vigia::sim

@@ -18,7 +18,8 @@ void Canvas::attach(const Frame& frame) {
 }
 
 void Canvas::require(const Window& window) {
-  const Window wanted = intersect(unite(computed_, intersect(window, frame_->full())), frame_->full());
+  const Window wanted =
+      intersect(unite(computed_, intersect(window, frame_->full())), frame_->full());
   if (contains(computed_, wanted)) return;
   if (computed_.empty()) {
     fill(wanted);

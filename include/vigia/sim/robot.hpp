@@ -36,12 +36,18 @@ struct RobotTruth {
 
 /// Unicycle base with a pan-tilt head and a motorised zoom, as a ViSP simulated robot of four
 /// velocity axes (v, ω, pan, tilt) and the zoom beside them. Every axis is limited by itself in
-/// rate, acceleration and range.
+/// rate, acceleration and range; an axis that meets its stop stands still there. The base moves on
+/// exact arcs, in steps of at most 5 ms while it accelerates.
 class Robot : public vpRobotSimulator {
  public:
+  /// Stands still at @p start, the head at rest at (0, 0) or the nearest angle in its range.
   Robot(const RobotParams& params, const Pose2& start, double zoom_mm, std::uint64_t seed);
   Robot(const Robot&) = delete;
   Robot& operator=(const Robot&) = delete;
+  ~Robot() override = default;
+
+  /// Range of the zoom motor, mm. Unlimited until it is set.
+  void set_zoom_range(double min_mm, double max_mm);
 
   /// Asks for rates; they hold until the next call.
   void command(const BaseRates& base, const HeadRates& head);
@@ -50,17 +56,56 @@ class Robot : public vpRobotSimulator {
   /// Draws the errors that are constant during a look.
   void begin_look();
 
-  const RobotTruth& truth() const;
-  /// What the wheels report of the motion since the last call.
+  const RobotTruth& truth() const { return truth_; }
+  /// What the wheels report of the motion since the last call: the true chord with an error of
+  /// covariance control_covariance(). Backward motion has a negative trans.
   OdometryIncrement read_odometry();
-  /// What the encoders say now (a fresh white part each call).
+  /// What the encoders say now (a fresh white part each call): true − look error − white.
   HeadReading read_head();
-  const RobotParams& params() const;
+  const RobotParams& params() const { return params_; }
+  /// wMc, where the camera truly is.
+  Eigen::Isometry3d camera_pose() const;
 
-  // ViSP's interface. Articular = (v, ω, pan rate, tilt rate); camera frame = its velocity twist.
+  /// @name ViSP's interface
+  /// The end effector is the camera c, the reference frame the world w. Articular velocities are
+  /// (v, ω, pan rate, tilt rate), articular positions (x, y, θ, pan, tilt). A frame that has no
+  /// meaning for a call, a vector of the wrong length and a wrong state are vpRobotExceptions.
+  /// @{
+  void init() override;
+  /// 6×4, twist of the camera in its own frame.
   void get_eJe(vpMatrix& eJe) override;
-  void setVelocity(const vpRobot::vpControlFrameType frame, const vpColVector& velocity) override;
+  /// 6×4, twist of the camera with world axes.
+  void get_fJe(vpMatrix& fJe) override;
+  /// Change of the articular position since the last call, in articular coordinates.
+  void getDisplacement(const vpRobot::vpControlFrameType frame, vpColVector& q) override;
+  /// Articular, or the camera's pose wMc as (t, θu) for the camera, end-effector and reference
+  /// frames.
   void getPosition(const vpRobot::vpControlFrameType frame, vpColVector& q) override;
+  using vpRobot::getPosition;
+  /// Puts the robot there at once, standing still. Articular only; odometry does not notice.
+  void setPosition(const vpRobot::vpControlFrameType frame, const vpColVector& q) override;
+  /// As command() with the zoom as it runs; the robot moves in advance(). Articular, or camera
+  /// frame: the articular velocity whose camera twist is nearest.
+  void setVelocity(const vpRobot::vpControlFrameType frame, const vpColVector& velocity) override;
+  vpRobotStateType setRobotState(const vpRobot::vpRobotStateType state) override;
+  /// @}
+
+ private:
+  void step(double h);
+
+  RobotParams params_;
+  RobotTruth truth_;
+  BaseRates base_command_;
+  HeadRates head_command_;
+  double zoom_min_mm_;
+  double zoom_max_mm_;
+  double turned_ = 0.0;  ///< since the last odometry reading, not wrapped
+  Stamp odometry_stamp_;
+  Pose2 odometry_pose_;
+  vpColVector displacement_from_;
+  RandomStream odometry_random_;
+  RandomStream look_random_;
+  RandomStream reading_random_;
 };
 
 }  // namespace vigia::sim

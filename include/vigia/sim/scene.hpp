@@ -21,8 +21,8 @@ struct ImagingParams {
   bool colour = false;       ///< whether frames carry colour (grey frames are cheaper)
 };
 
-/// Looks of the building: texture of walls, floor and ceiling, light, dark round clutter.
-/// Read from the world file's `appearance` and `clutter`.
+// Looks of the building: texture of walls, floor and ceiling, light, dark round clutter.
+// Read from the world file; see vigia/sim/appearance.hpp.
 struct Appearance;
 
 /// The true world as a camera sees it: walls, floor, ceiling and obstacles with texture, discs on
@@ -40,6 +40,7 @@ class Scene {
                                          Stamp stamp, const ImagingParams& params) const;
 
  private:
+  friend class SceneFrame;
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

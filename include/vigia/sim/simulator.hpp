@@ -9,12 +9,13 @@ namespace vigia::sim {
 struct RobotSetup {
   std::string name;
   RobotParams robot;
-  ZoomCalibration zoom;     ///< what the robot believes; per-look focal error on top is the truth
+  ZoomCalibration zoom;  ///< what the robot believes; per-look focal error on top is the truth
   ImagingParams imaging;
   double initial_zoom_mm = 8.0;
 };
 
-/// Reads a robot file: keys `name`, `base`, `head`, `zoom`, `camera`, `odometry`, `sensor`.
+/// Reads a robot file: keys `name`, `base`, `head`, `zoom`, `camera`, `odometry`, `sensor`. Throws
+/// InputError with the place of what is wrong.
 RobotSetup read_robot_setup(MapReader& reader);
 
 /// The simulated world with the robot in it.
@@ -29,6 +30,9 @@ class Simulator {
 
   /// The camera's exposure at the robot's present true state.
   std::unique_ptr<imaging::Frame> expose() const;
+  /// The camera's true intrinsics now: calibrated at the zoom's position, scaled by the look's
+  /// focal error.
+  Intrinsics true_intrinsics() const;
   /// Distance from the robot's hull to the nearest true face, m; negative: collided.
   double clearance() const;
 

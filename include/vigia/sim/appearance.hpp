@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace vigia::sim {
+
+/// Things on the walls and on the floor that a detector of discs must reject.
+enum class ClutterKind { blob, ellipse, ring, square, half_disc };
+
+/// One dark mark on a face. size_m is half its greatest width.
+struct Clutter {
+  ClutterKind kind = ClutterKind::blob;
+  Eigen::Vector3d centre_w = Eigen::Vector3d::Zero();
+  double normal_yaw = 0.0;  ///< outward normal in the floor plane, rad; unused on the floor
+  bool on_floor = false;
+  double size_m = 0.05;
+  double turn = 0.0;  ///< about the normal, rad
+  double grey = 60.0;
+};
+
+/// How the sheet round a disc is cut.
+enum class PlateShape { square, disc };
+
+/// Looks of the building. Grey levels are before the light's gain.
+struct Appearance {
+  std::uint64_t seed = 1;  ///< of textures and random clutter: the world's, not the mission's
+  double contrast = 1.0;   ///< of every texture; 0 leaves plain surfaces
+  double light = 1.0;      ///< gain of the whole picture
+  double wall_grey = 150.0;
+  double floor_grey = 105.0;
+  double ceiling_grey = 190.0;
+  double obstacle_grey = 125.0;
+  double disc_grey = 60.0;
+  double plate_grey = 210.0;
+  double plate_factor = 1.6;  ///< half the sheet's width over the disc's radius
+  PlateShape plate_shape = PlateShape::square;
+  std::vector<Clutter> clutter;  ///< named in the file and drawn at random
+};
+
+}  // namespace vigia::sim

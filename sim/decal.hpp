@@ -1,0 +1,53 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "vigia/core/camera.hpp"
+#include "vigia/imaging/frame.hpp"
+#include "vigia/sim/appearance.hpp"
+
+namespace vigia::sim {
+
+enum class DecalShape { disc, square_plate, blob, ellipse, ring, square, half_disc };
+
+/// Something painted flat on a surface, in frame d: z the surface's outward normal, size_m half its
+/// width.
+struct Decal {
+  DecalShape shape = DecalShape::disc;
+  Eigen::Isometry3d wMd = Eigen::Isometry3d::Identity();
+  double size_m = 0.1;
+  float grey = 60.0F;
+  bool blurred = false;     ///< exact coverage and optical blur: landmarks
+  std::size_t surface = 0;  ///< index of the surface that carries it
+};
+
+/// A decal as one exposure sees it. coverage of a pixel is the share of grey that it takes.
+class DecalView {
+ public:
+  /// Empty box when the decal has no image in the frame.
+  DecalView(const Decal& decal, const Eigen::Isometry3d& cMw, const Intrinsics& intrinsics,
+            double blur_px);
+
+  const imaging::Window& box() const { return box_; }
+  const Decal& decal() const { return *decal_; }
+
+  /// Coverage of @p count pixels of row @p v from @p u on, which lie in the box. Landmarks are
+  /// computed as a whole the first time, so that a pixel never depends on the window.
+  void coverage(int u, int v, int count, float* out);
+
+ private:
+  void compute_blurred();
+
+  const Decal* decal_;
+  const Intrinsics* intrinsics_;
+  double blur_px_;
+  imaging::Window box_;
+  Eigen::Matrix3d dHray_ = Eigen::Matrix3d::Identity();    ///< ray (x, y, 1) → decal, size_m = 1
+  Eigen::Matrix2d dxy_duv_ = Eigen::Matrix2d::Identity();  ///< at the decal's centre
+  std::vector<float> blurred_;
+};
+
+}  // namespace vigia::sim

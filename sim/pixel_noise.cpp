@@ -1,0 +1,75 @@
+#include "pixel_noise.hpp"
+
+#include "simd.hpp"
+
+#include <array>
+#include <cmath>
+
+#include "vigia/core/random.hpp"
+
+namespace vigia::sim {
+namespace {
+
+constexpr int kTableBits = 12;
+constexpr int kTableSize = 1 << kTableBits;
+
+/// The quantile x with Φ(x) = p, by Newton steps from 0 in the tail-safe direction.
+double normal_quantile(double p) {
+  double x = 0.0;
+  for (int i = 0; i < 60; ++i) {
+    const double error = 0.5 * std::erfc(-x / std::sqrt(2.0)) - p;
+    const double density = std::exp(-0.5 * x * x) / std::sqrt(2.0 * 3.14159265358979323846);
+    x -= std::fmax(-0.5, std::fmin(0.5, error / density));
+  }
+  return x;
+}
+
+/// Quantiles at the middles of equal shares of probability, scaled to unit variance.
+std::array<float, kTableSize> normal_table() {
+  std::array<double, kTableSize> x{};
+  double sum = 0.0;
+  for (int i = 0; i < kTableSize / 2; ++i) {
+    const double quantile = normal_quantile((i + 0.5) / kTableSize);
+    x[static_cast<std::size_t>(i)] = quantile;
+    x[static_cast<std::size_t>(kTableSize - 1 - i)] = -quantile;
+    sum += 2.0 * quantile * quantile;
+  }
+  const double scale = 1.0 / std::sqrt(sum / kTableSize);
+  std::array<float, kTableSize> table{};
+  for (std::size_t i = 0; i < table.size(); ++i) table[i] = static_cast<float>(scale * x[i]);
+  return table;
+}
+
+const std::array<float, kTableSize> kNormal = normal_table();
+
+VIGIA_PIXEL_LOOP
+void noisy_row(const float* __restrict value, const float* __restrict table, float sigma,
+               std::uint32_t row_key, std::uint32_t u, int count, unsigned char* __restrict out) {
+  for (int i = 0; i < count; ++i) {
+    // Finaliser of MurmurHash3, which lets every input bit change every output bit.
+    std::uint32_t h = ((u + static_cast<std::uint32_t>(i)) * 0x9e3779b1U) ^ row_key;
+    h ^= h >> 16;
+    h *= 0x85ebca6bU;
+    h ^= h >> 13;
+    h *= 0xc2b2ae35U;
+    const auto index = static_cast<std::int32_t>(h >> (32 - kTableBits));
+    float grey = value[i] + sigma * table[index] + 0.5F;
+    grey = grey > 0.0F ? grey : 0.0F;
+    grey = grey < 255.0F ? grey : 255.0F;
+    out[i] = static_cast<unsigned char>(static_cast<std::int32_t>(grey));
+  }
+}
+
+}  // namespace
+
+PixelNoise::PixelNoise(std::uint64_t seed, Stamp stamp)
+    : key_(derive_seed(seed, static_cast<std::uint64_t>(stamp.ns))) {}
+
+void PixelNoise::add_and_round(const float* value, float sigma, int u, int v, int channel,
+                               int count, unsigned char* out) const {
+  const auto line = (static_cast<std::uint64_t>(channel) << 32) | static_cast<std::uint32_t>(v);
+  const auto row_key = static_cast<std::uint32_t>(derive_seed(key_, line) >> 32);
+  noisy_row(value, kNormal.data(), sigma, row_key, static_cast<std::uint32_t>(u), count, out);
+}
+
+}  // namespace vigia::sim
