@@ -23,14 +23,14 @@ Foreseen ramp(double rate, double command, double acceleration, double tick) {
 
 BaseRates BaseMotion::expect(const BaseRates& odometry, const BaseRates& command) {
   const BaseLimits& limits = params_.limits;
-  const double v = end_.v + params_.correction * (odometry.v - mean_.v);
-  const double w = end_.w + params_.correction * (odometry.w - mean_.w);
-  const Foreseen forward = ramp(v, std::clamp(command.v, -limits.speed, limits.speed),
+  offset_.v += params_.adaptation * (odometry.v - mean_.v);
+  offset_.w += params_.adaptation * (odometry.w - mean_.w);
+  const Foreseen forward = ramp(end_.v, std::clamp(command.v, -limits.speed, limits.speed),
                                 limits.acceleration, params_.tick_s);
-  const Foreseen turn = ramp(w, std::clamp(command.w, -limits.turn_rate, limits.turn_rate),
+  const Foreseen turn = ramp(end_.w, std::clamp(command.w, -limits.turn_rate, limits.turn_rate),
                              limits.turn_acceleration, params_.tick_s);
   end_ = {forward.end, turn.end};
-  mean_ = {forward.mean, turn.mean};
+  mean_ = {forward.mean + offset_.v, turn.mean + offset_.w};
   return mean_;
 }
 

@@ -169,15 +169,21 @@ GazeController::Aim GazeController::aim_for(const GazeInput& input,
   Aim aim;
   aim.p_r = landmark_in_base(input, landmark);
   aim.now = reachable(aim_at(geometry_, aim.p_r), input.head.angles);
-  aim.at_arrival = aim.now;
+  // Of the aim, not of where the head is: on its way the head may have the landmark behind it.
+  const Eigen::Vector3d p_c = camera_in_base(geometry_, aim.now).inverse() * aim.p_r;
+  if (p_c.z() > 0.0) aim.forward = servo_.compensation(p_c, aim.now, input.base);
+
+  HeadAngles at_arrival = aim.now;
   aim.focal_px = wanted_focal(input, landmark, aim.p_r);
   // The arrival depends on the aim and the aim on the arrival; the second round changes little.
   for (int round = 0; round < 2; ++round) {
     const double ahead =
-        std::min(arrival_time(input, aim.at_arrival, aim.focal_px), params_.motion_horizon_s);
+        std::min(arrival_time(input, at_arrival, aim.focal_px), params_.motion_horizon_s);
     const Eigen::Vector3d p_r = after_motion(aim.p_r, input.base, ahead);
-    aim.at_arrival = reachable(aim_at(geometry_, p_r), input.head.angles);
+    at_arrival = reachable(aim_at(geometry_, p_r), input.head.angles);
     aim.focal_px = wanted_focal(input, landmark, p_r);
+    aim.intercept = {at_arrival.pan - ahead * aim.forward.pan,
+                     at_arrival.tilt - ahead * aim.forward.tilt};
   }
   return aim;
 }
@@ -193,15 +199,11 @@ HeadRates GazeController::drive(const GazeInput& input, const Aim& aim, const He
   const double tick = params_.servo.hold_s;
   const HeadAngles& head = input.head.angles;
   const SlewLaw law{limits_.rate, limits_.acceleration, params_.aim_gain, tick};
-  // Of the aim, not of where the head is: on its way the head may have the landmark behind it.
-  const Eigen::Vector3d p_c = camera_in_base(geometry_, aim.now).inverse() * aim.p_r;
-  const HeadAngles forward =
-      p_c.z() > 0.0 ? servo_.compensation(p_c, aim.now, input.base) : HeadAngles{};
   HeadRates rates;
   rates.angles.pan =
-      std::clamp(law.rate_for(goal.pan - head.pan) + forward.pan, -limits_.rate, limits_.rate);
-  rates.angles.tilt =
-      std::clamp(law.rate_for(goal.tilt - head.tilt) + forward.tilt, -limits_.rate, limits_.rate);
+      std::clamp(law.rate_for(goal.pan - head.pan) + aim.forward.pan, -limits_.rate, limits_.rate);
+  rates.angles.tilt = std::clamp(law.rate_for(goal.tilt - head.tilt) + aim.forward.tilt,
+                                 -limits_.rate, limits_.rate);
   rates.zoom_mm_s = std::clamp((zoom_.zoom_for_focal(focal_px) - input.head.zoom_mm) / tick,
                                -limits_.zoom_rate_mm_s, limits_.zoom_rate_mm_s);
   return rates;
@@ -216,7 +218,7 @@ GazeOutput GazeController::slew(const GazeInput& input, const Aim& aim) {
     return hold(input, aim);
   }
   GazeOutput output;
-  output.command = drive(input, aim, aim.at_arrival, aim.focal_px);
+  output.command = drive(input, aim, aim.intercept, aim.focal_px);
   return output;
 }
 

@@ -91,12 +91,14 @@ class GazeController {
   const std::optional<GazeOrder>& current() const { return order_; }
 
  private:
-  /// Where the head should be: the landmark's direction now, and when head and zoom arrive.
+  /// Where the head should be. Angles in rad, rates in rad/s.
   struct Aim {
-    Eigen::Vector3d p_r;
-    HeadAngles now;
-    HeadAngles at_arrival;
-    double focal_px = 0.0;
+    Eigen::Vector3d p_r;  ///< the landmark in the base frame
+    HeadAngles now;       ///< its direction now
+    HeadAngles forward;   ///< the rates that keep up with it
+    HeadAngles
+        intercept;  ///< driven to while running at forward, head and landmark meet on arrival
+    double focal_px = 0.0;  ///< wanted on arrival
   };
 
   void carry_target(const GazeInput& input);
