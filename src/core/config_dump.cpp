@@ -26,8 +26,26 @@ std::string quote(const std::string& text) {
   return quoted + '"';
 }
 
+bool is_plain_scalar(const ConfigNode& node, const std::string& text) {
+  return node.kind == ConfigNode::Kind::scalar && !node.quoted && node.scalar == text;
+}
+
+// A plain scalar of one place may be something else in another: '-' in a flow list is an empty
+// list below a dash.
+bool reads_back_plain(const std::string& text) {
+  if (is_plain_text(text)) return true;
+  try {
+    const auto root = parse_config("version: 1\nlist:\n  - " + text + "\nkey: " + text + "\n", "");
+    const ConfigNode& list = *root->find("list");
+    return root->entries.size() == 2 && list.items.size() == 1 &&
+           is_plain_scalar(*list.items.front(), text) && is_plain_scalar(*root->find("key"), text);
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
 std::string write_scalar(const ConfigNode& node) {
-  return node.quoted ? quote(node.scalar) : node.scalar;
+  return node.quoted || !reads_back_plain(node.scalar) ? quote(node.scalar) : node.scalar;
 }
 
 std::string write_key(const std::string& key) {
@@ -73,6 +91,8 @@ std::string write_flow(const ConfigNode& node) {
 
 /// Appends a value in block style below its key or dash: " value\n" or "\n" and indented lines.
 void write_below(std::string& out, const ConfigNode& node, std::size_t indent);
+/// Appends an item of a list in block style.
+void write_item(std::string& out, const ConfigNode& item, std::size_t indent);
 
 void write_entries(std::string& out, const ConfigNode& map, std::size_t indent) {
   for (const auto& [key, value] : map.entries) {
@@ -92,10 +112,18 @@ void write_below(std::string& out, const ConfigNode& node, std::size_t indent) {
     write_entries(out, node, indent);
   } else {
     out += "\n";
-    for (const auto& item : node.items) {
-      out += std::string(indent, ' ') + "-";
-      write_below(out, *item, indent + 2);
-    }
+    for (const auto& item : node.items) write_item(out, *item, indent);
+  }
+}
+
+void write_item(std::string& out, const ConfigNode& item, std::size_t indent) {
+  const std::size_t begin = out.size();
+  if (item.kind == ConfigNode::Kind::map && !fits_flow(item)) {
+    write_entries(out, item, indent + 2);
+    out[begin + indent] = '-';  // the first entry stands on the line of the dash
+  } else {
+    out += std::string(indent, ' ') + "-";
+    write_below(out, item, indent + 2);
   }
 }
 

@@ -60,12 +60,33 @@ void require_clean_text(const std::string& text, SourceLocation where, bool wher
   }
 }
 
+/// Whether the scalar that begins at @p begin, perhaps after its anchor and tag, opens a quote that
+/// the text never closes: yaml-cpp takes the end of the text for the quote's end.
+bool leaves_quote_open(const std::string& text, std::size_t begin) {
+  std::size_t i = begin;
+  while (i < text.size() && (text[i] == '&' || text[i] == '!')) {
+    i = text.find_first_of(" \t\r\n", i);
+    i = text.find_first_not_of(" \t\r\n", i);
+  }
+  if (i >= text.size() || (text[i] != '"' && text[i] != '\'')) return false;
+  const char quote = text[i];
+  for (++i; i < text.size(); ++i) {
+    if (quote == '"' && text[i] == '\\') {
+      ++i;
+    } else if (text[i] == quote) {
+      if (quote == '"' || i + 1 == text.size() || text[i + 1] != quote) return false;
+      ++i;
+    }
+  }
+  return true;
+}
+
 /// Builds the tree from yaml-cpp's events: they carry the mark of every key and alias, which
 /// yaml-cpp's own node tree forgets.
 class TreeBuilder : public YAML::EventHandler {
  public:
-  TreeBuilder(SourceLocation where, bool where_is_fixed)
-      : where_(std::move(where)), where_is_fixed_(where_is_fixed) {}
+  TreeBuilder(const std::string& text, SourceLocation where, bool where_is_fixed)
+      : text_(text), where_(std::move(where)), where_is_fixed_(where_is_fixed) {}
 
   NodePtr root() const { return root_; }
   SourceLocation locate(const YAML::Mark& mark) const {
@@ -94,6 +115,8 @@ class TreeBuilder : public YAML::EventHandler {
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& value) override {
     if (tag != "?" && tag != "!" && tag != "tag:yaml.org,2002:str") reject_tag(mark, tag);
+    if (tag != "?" && leaves_quote_open(text_, static_cast<std::size_t>(mark.pos)))
+      throw InputError(locate(mark), "the quote that opens here is never closed");
     NodePtr node = make(ConfigNode::Kind::scalar, mark);
     node->scalar = value;
     node->quoted = tag != "?" || value.find('\n') != std::string::npos;
@@ -161,7 +184,7 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   [[noreturn]] static void reject_key(const SourceLocation& where) {
-    throw InputError(where, "a key must be a short text");
+    throw InputError(where, "a key must be a short text (or a bracket is left open)");
   }
 
   void add(const NodePtr& node, YAML::anchor_t anchor) {
@@ -193,6 +216,7 @@ class TreeBuilder : public YAML::EventHandler {
     top.key_where = node.where;
   }
 
+  const std::string& text_;
   SourceLocation where_;
   bool where_is_fixed_;
   NodePtr root_;
@@ -203,9 +227,11 @@ class TreeBuilder : public YAML::EventHandler {
 
 }  // namespace
 
-NodePtr parse_yaml(const std::string& text, const SourceLocation& where, bool where_is_fixed) {
-  require_clean_text(text, where, where_is_fixed);
-  TreeBuilder builder(where, where_is_fixed);
+NodePtr parse_yaml(const std::string& bytes, const SourceLocation& where, bool where_is_fixed) {
+  require_clean_text(bytes, where, where_is_fixed);
+  const std::string mark = "\xEF\xBB\xBF";  // some editors begin a file with a byte-order mark
+  const std::string text = bytes.substr(bytes.compare(0, mark.size(), mark) == 0 ? mark.size() : 0);
+  TreeBuilder builder(text, where, where_is_fixed);
   try {
     std::istringstream stream(text);
     YAML::Parser parser(stream);
@@ -219,7 +245,7 @@ NodePtr parse_yaml(const std::string& text, const SourceLocation& where, bool wh
 std::string read_config_text(const std::filesystem::path& file, const SourceLocation& wanted_at) {
   const auto fail = [&](const std::string& why) {
     const bool elsewhere = !wanted_at.file.empty();
-    const std::string name = "the file " + quoted_for_message(file.string()) + " ";
+    const std::string name = "the file '" + file.string() + "' ";
     throw InputError(elsewhere ? wanted_at : SourceLocation{file.string(), 0, 0},
                      (elsewhere ? name : "the file ") + why);
   };

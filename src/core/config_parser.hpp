@@ -11,7 +11,7 @@ namespace vigia {
 /// tag but `!!str`, no anchor inside itself, bounded depth and size. An empty text gives a null
 /// node. Every node is located at its line and column of @p where.file, or, when @p where_is_fixed,
 /// at @p where. Throws InputError.
-std::shared_ptr<ConfigNode> parse_yaml(const std::string& text, const SourceLocation& where,
+std::shared_ptr<ConfigNode> parse_yaml(const std::string& bytes, const SourceLocation& where,
                                        bool where_is_fixed);
 
 /// The content of a file of configuration. Throws InputError at @p wanted_at (where the file was

@@ -202,12 +202,12 @@ const ConfigNode* MapReader::find(const std::string& key) const {
   return value != nullptr && !value->absent() ? value : nullptr;
 }
 
-const ConfigNode* MapReader::ask(const std::string& key) {
+const ConfigNode* MapReader::ask(const std::string& key) const {
   asked_.insert(key);
   return find(key);
 }
 
-const ConfigNode& MapReader::require(const std::string& key) {
+const ConfigNode& MapReader::require(const std::string& key) const {
   const ConfigNode* value = ask(key);
   if (value == nullptr) throw InputError(where(), path(key) + ": the key is missing");
   return *value;

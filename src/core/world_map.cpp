@@ -1,6 +1,5 @@
 #include "vigia/core/world_map.hpp"
 
-#include "plane_geometry.hpp"
 #include "world_checks.hpp"
 
 #include "vigia/core/angle.hpp"

@@ -65,6 +65,7 @@ class MapReader {
   /// @p what names the map in messages, e.g. "planner". A null node counts as an empty map.
   MapReader(std::shared_ptr<ConfigNode> node, std::string what);
 
+  /// Whether the key was given; counts as asking for it.
   bool has(const std::string& key) const;
   const SourceLocation& where() const;
   SourceLocation where(const std::string& key) const;
@@ -106,8 +107,8 @@ class MapReader {
   /// The key with the names of the maps around it, as `--set` takes it.
   std::string path(const std::string& key) const;
   const ConfigNode* find(const std::string& key) const;
-  const ConfigNode* ask(const std::string& key);
-  const ConfigNode& require(const std::string& key);
+  const ConfigNode* ask(const std::string& key) const;
+  const ConfigNode& require(const std::string& key) const;
   void resolve(const std::string& key, std::shared_ptr<ConfigNode> value);
 
   std::shared_ptr<ConfigNode> node_;

@@ -1,0 +1,282 @@
+#include "vigia/core/world_map.hpp"
+
+#include "config_files.hpp"
+
+#include <cmath>
+#include <ostream>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "vigia/core/angle.hpp"
+#include "vigia/core/path.hpp"
+
+namespace vigia {
+namespace {
+
+WorldMap read_world(const std::string& text) {
+  MapReader reader(parse_config(text, "w.yaml"), "");
+  WorldMap world = read_world_map(reader);
+  reader.finish();
+  return world;
+}
+
+constexpr const char* kRoom =
+    "version: 1\nroom: {width_m: 10, depth_m: 6, height_m: 3}\n"
+    "walls: [{from_m: [5, 0], to_m: [5, 4]}]\n"
+    "obstacles: [{polygon_m: [[7, 2], [8, 2], [8, 3], [7, 3]], height_m: 2}]\n"
+    "landmarks:\n";
+
+TEST(WorldMap, IsReadWithRoomWallsObstaclesAndLandmarks) {
+  const WorldMap world =
+      read_world(std::string(kRoom) +
+                 "  - {id: 4, kind: disc, centre_m: [0, 3, 1.5], normal_deg: 0, radius_m: 0.1}\n"
+                 "  - {id: 2, kind: disc, centre_m: [7.5, 3, 1.5], normal_deg: 90, radius_m: 0.2}\n"
+                 "name: hall\n");
+  EXPECT_EQ(world.name, "hall");
+  EXPECT_EQ(world.plan.max_corner(), Eigen::Vector2d(10.0, 6.0));
+  EXPECT_EQ(world.plan.ceiling_m(), 3.0);
+  ASSERT_EQ(world.plan.partitions().size(), 1U);
+  EXPECT_EQ(world.plan.partitions()[0].height_m, 3.0);
+  ASSERT_EQ(world.plan.obstacles().size(), 1U);
+  ASSERT_EQ(world.landmarks.all().size(), 2U);
+  const Landmark* landmark = world.landmarks.find(2);
+  ASSERT_NE(landmark, nullptr);
+  EXPECT_EQ(disc_radius(*landmark), 0.2);
+  EXPECT_EQ(landmark->centre_w(), Eigen::Vector3d(7.5, 3.0, 1.5));
+  EXPECT_LT((landmark->normal_w() - Eigen::Vector3d::UnitY()).norm(), 1e-15);
+}
+
+TEST(WorldMap, HasARoomOfAnyOutline) {
+  const WorldMap world = read_world(
+      "version: 1\nroom: {outline_m: [[0, 0], [4, 0], [4, 4], [2, 4], [2, 2], [0, 2]]}\n"
+      "walls: [{from_m: [4, 2], to_m: [2, 2], height_m: 1.2}]\n");
+  EXPECT_EQ(world.plan.outline().size(), 6U);
+  EXPECT_EQ(world.plan.ceiling_m(), 2.8);
+  EXPECT_EQ(world.plan.partitions()[0].height_m, 1.2);
+}
+
+TEST(WorldMap, LeavesOtherKeysToOtherReaders) {
+  MapReader reader(
+      parse_config("version: 1\nroom: {width_m: 4, depth_m: 4}\nclutter: 3\n", "w.yaml"), "");
+  read_world_map(reader);
+  EXPECT_EQ(reader.integer("clutter", {0.0, 10.0}), 3);
+  reader.finish();
+}
+
+TEST(WorldMap, OnePartitionMayCarryLandmarksOnBothSides) {
+  const WorldMap world = read_world(
+      std::string(kRoom) +
+      "  - {id: 1, kind: disc, centre_m: [5, 3, 1.5], normal_deg: 0, radius_m: 0.1}\n"
+      "  - {id: 2, kind: disc, centre_m: [5, 3, 1.5], normal_deg: 180, radius_m: 0.1}\n");
+  EXPECT_EQ(world.landmarks.all().size(), 2U);
+}
+
+TEST(WorldMap, AFreeStandingLandmarkNeedsNoWall) {
+  const WorldMap world = read_world(std::string(kRoom) +
+                                    "  - {id: 1, kind: disc, centre_m: [2, 3, 1.5], normal_deg: 0, "
+                                    "radius_m: 0.1, free_standing: true}\n");
+  EXPECT_EQ(world.landmarks.all().size(), 1U);
+}
+
+TEST(WorldMap, ResolvedAndWrittenItReadsBackTheSame) {
+  const auto root = parse_config(std::string(kRoom) + "  []\n", "w.yaml");
+  MapReader reader(root, "");
+  read_world_map(reader);
+  const auto again = parse_config(dump_config(*root), "dump.yaml");
+  MapReader second(again, "");
+  read_world_map(second);
+  second.finish();
+  EXPECT_TRUE(same_tree(*root, *again));
+}
+
+struct Mistake {
+  std::string text;
+  std::string message;
+};
+
+void PrintTo(const Mistake& mistake, std::ostream* out) {
+  *out << mistake.message;
+}
+
+class WorldMistake : public testing::TestWithParam<Mistake> {};
+
+TEST_P(WorldMistake, IsReportedWithItsPlace) {
+  EXPECT_EQ(input_error([] { read_world(GetParam().text); }), GetParam().message);
+}
+
+Mistake room(const std::string& room, const std::string& message) {
+  return {"version: 1\nroom: " + room + "\n", "w.yaml:2:" + message};
+}
+
+Mistake wall(const std::string& wall, const std::string& message) {
+  return {"version: 1\nroom: {width_m: 10, depth_m: 6, height_m: 3}\nwalls:\n  - " + wall + "\n",
+          "w.yaml:4:" + message};
+}
+
+Mistake obstacle(const std::string& polygon, const std::string& height,
+                 const std::string& message) {
+  return {"version: 1\nroom: {width_m: 10, depth_m: 6, height_m: 3}\nobstacles:\n  - polygon_m: " +
+              polygon + "\n    height_m: " + height + "\n",
+          "w.yaml:" + message};
+}
+
+Mistake disc(const std::string& centre, const std::string& normal, const std::string& radius,
+             const std::string& message) {
+  return {std::string(kRoom) + "  - id: 1\n    kind: disc\n    centre_m: " + centre +
+              "\n    normal_deg: " + normal + "\n    radius_m: " + radius + "\n",
+          "w.yaml:" + message};
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OfTheRoom, WorldMistake,
+    testing::Values(
+        Mistake{"version: 1\nname: x\n", "w.yaml:1:1: room.width_m: the key is missing"},
+        room("{width_m: 10}", "1: room.depth_m: the key is missing"),
+        room("{width_m: 0, depth_m: 6}", "17: room.width_m: found '0', must lie in [0.5, 1000]"),
+        room("{outline_m: [[0, 0], [2, 2], [2, 0], [0, 2]]}",
+             "19: room.outline_m: the polygon crosses itself: side 1 meets side 3"),
+        room("{outline_m: [[0, 0], [2, 0], [2, 0], [0, 2]]}",
+             "19: room.outline_m: corner 2 is repeated"),
+        room("{outline_m: [[0, 0], [2, 0], [1, 0]]}",
+             "19: room.outline_m: the polygon crosses itself: side 1 meets side 2"),
+        room("{outline_m: [[0, 0], [2, 0], [2, 2]], width_m: 3}",
+             "45: unknown key 'width_m' in room (known: height_m, outline_m)")));
+
+INSTANTIATE_TEST_SUITE_P(
+    OfAWallOrObstacle, WorldMistake,
+    testing::Values(
+        wall("{from_m: [2, 2], to_m: [2, 2]}",
+             "28: walls[0].to_m: the wall has no length: it ends where it begins"),
+        wall("{from_m: [2, 2], to_m: [2, 7]}",
+             "28: walls[0].to_m: it reaches outside the room at [2.000 m, 6.500 m]"),
+        wall("{from_m: [2, 2]}", "5: walls[0].to_m: the key is missing"),
+        wall("{from_m: [2, 2], to_m: [2, 3], height_m: 3.5}",
+             "46: walls[0].height_m: found 3.500 m, higher than the room's 3.000 m"),
+        obstacle("[[1, 1], [2, 1], [2, 2]]", "4",
+                 "5:15: obstacles[0].height_m: found 4.000 m, higher than the room's 3.000 m"),
+        obstacle("[[1, 1], [2, 1]]", "1",
+                 "4:16: obstacles[0].polygon_m: found a list of 2, must be a list of at least 3 "
+                 "points [x, y]"),
+        obstacle("[[1, 1], [2, 2], [2, 1], [1, 2]]", "1",
+                 "4:16: obstacles[0].polygon_m: the polygon crosses itself: side 1 meets side 3"),
+        obstacle(
+            "[[9, 1], [11, 1], [11, 2]]", "1",
+            "4:16: obstacles[0].polygon_m: it reaches outside the room at [10.500 m, 1.000 m]"),
+        Mistake{
+            "version: 1\n"
+            "room: {outline_m: [[0, 0], [4, 0], [4, 4], [3, 4], [3, 1], [1, 1], [1, 4], [0, 4]]}\n"
+            "walls: [{from_m: [0.5, 3], to_m: [3.5, 3]}]\n",
+            "w.yaml:3:34: walls[0].to_m: it reaches outside the room at [2.000 m, 3.000 m]"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    OfALandmark, WorldMistake,
+    testing::Values(
+        disc("[11, 3, 1.5]", "180", "0.1",
+             "8:15: landmarks[0].centre_m: the landmark lies outside the room"),
+        disc("[7.5, 2.5, 1.5]", "180", "0.1",
+             "8:15: landmarks[0].centre_m: the landmark lies inside an obstacle"),
+        disc("[2, 3, 1.5]", "180", "0.1",
+             "8:15: landmarks[0].centre_m: the landmark is mounted on no wall: none that "
+             "normal_deg is square to lies within 0.020 m (write 'free_standing: true' for one "
+             "that needs none)"),
+        disc("[0.021, 3, 1.5]", "0", "0.1",
+             "8:15: landmarks[0].centre_m: the landmark is mounted on no wall: none that "
+             "normal_deg is square to lies within 0.020 m (write 'free_standing: true' for one "
+             "that needs none)"),
+        disc("[0, 3, 1.5]", "45", "0.1",
+             "8:15: landmarks[0].centre_m: the landmark is mounted on no wall: none that "
+             "normal_deg is square to lies within 0.020 m (write 'free_standing: true' for one "
+             "that needs none)"),
+        disc("[0, 3, 1.5]", "180", "0.1",
+             "9:17: landmarks[0].normal_deg: the landmark looks into the wall that it is mounted "
+             "on"),
+        disc("[7, 2.5, 1.5]", "0", "0.1",
+             "9:17: landmarks[0].normal_deg: the landmark looks into the wall that it is mounted "
+             "on"),
+        disc("[5.01, 2.5, 1.5]", "180", "0.1",
+             "9:17: landmarks[0].normal_deg: the landmark looks into the wall that it is mounted "
+             "on"),
+        disc("[7, 2.5, 1.95]", "180", "0.1",
+             "8:15: landmarks[0].centre_m: the disc sticks out above its wall, which is 2.000 m "
+             "high"),
+        disc("[0, 3, 2.95]", "0", "0.1",
+             "8:15: landmarks[0].centre_m: the disc reaches above the ceiling at 3.000 m"),
+        disc("[0, 3, 0.05]", "0", "0.1",
+             "8:15: landmarks[0].centre_m: the disc reaches below the floor"),
+        disc("[7, 2.05, 1]", "180", "0.1",
+             "8:15: landmarks[0].centre_m: the disc sticks out at the side of its wall, which is "
+             "1.000 m long"),
+        disc("[0, 3, 1.5]", "0", "-0.1",
+             "10:15: landmarks[0].radius_m: found '-0.1', must lie in [0.005, 2]"),
+        disc("[0, 3, 1.5]", "north", "0.1",
+             "9:17: landmarks[0].normal_deg: found 'north', must be a number"),
+        Mistake{
+            std::string(kRoom) +
+                "  - {id: 1, kind: disk, centre_m: [0, 3, 1.5], normal_deg: 0, radius_m: 0.1}\n",
+            "w.yaml:6:19: landmarks[0].kind: found 'disk', must be one of disc; did you mean "
+            "'disc'?"},
+        Mistake{
+            std::string(kRoom) +
+                "  - {id: 1, kind: disc, centre_m: [0, 3, 1.5], normal_deg: 0, radius_m: 0.1}\n"
+                "  - {id: 1, kind: disc, centre_m: [0, 2, 1.5], normal_deg: 0, radius_m: 0.1}\n",
+            "w.yaml:7:10: landmarks[1].id: the id 1 occurs twice; it was given before at "
+            "w.yaml:6:10"},
+        Mistake{std::string(kRoom) +
+                    "  - {id: 1, kind: disc, centre_m: [0, 3, 1.5], normal_deg: 0, radius_m: 0.1}\n"
+                    "  - {id: 2, kind: disc, centre_m: [0, 3.1, 1.4], normal_deg: 0, radius_m: "
+                    "0.1}\n",
+                "w.yaml:7:35: landmarks[1].centre_m: the landmark overlaps landmark 1"},
+        Mistake{std::string(kRoom) +
+                    "  - {id: 1, kind: disc, centre_m: [0, 3, 1.5], normal_deg: 0, radius_m: 0.1, "
+                    "colour: red}\n",
+                "w.yaml:6:78: unknown key 'colour' in landmarks[0] (known: centre_m, "
+                "free_standing, id, kind, normal_deg, radius_m)"}));
+
+/// Whether the camera of a robot at @p eye sees a landmark well enough for Armingol's Table 1.
+bool sees(const WorldMap& world, const Landmark& landmark, const Eigen::Vector3d& eye) {
+  const Eigen::Vector3d gaze = eye - landmark.centre_w();
+  const double range = gaze.norm();
+  return range >= 0.6 && range <= 9.0 &&
+         gaze.dot(landmark.normal_w()) >= range * std::cos(from_deg(65.0)) &&
+         world.plan.line_of_sight(eye, landmark.centre_w());
+}
+
+TEST(ArmingolRoom, SeesWhatTable1ListsFromEachControlArea) {
+  MapReader reader(load_config(VIGIA_SOURCE_DIR "/config/worlds/armingol-room.yaml"), "");
+  const WorldMap world = read_world_map(reader);
+  const std::vector<std::set<int>> table1{{0, 4, 6}, {4}, {1, 2, 3}, {1, 2, 3},
+                                          {2, 3, 4}, {4}, {0, 6}};
+  const std::vector<Eigen::Vector2d> corners{{0.9, 2.0}, {9.4, 2.0}, {9.4, 6.0}, {0.9, 6.0}};
+  const Path loop(corners);
+  for (std::size_t area = 0; area < table1.size(); ++area) {
+    for (const Landmark& landmark : world.landmarks.all()) {
+      int seen = 0;
+      constexpr int kSamples = 12;
+      for (int i = 0; i < kSamples; ++i) {
+        const double s = 3.0 * static_cast<double>(area) + 0.25 * (i + 0.5);
+        const Eigen::Vector2d at = loop.at(s);
+        const double heading = loop.heading(s);
+        seen += sees(world, landmark,
+                     {at.x() + 0.15 * std::cos(heading), at.y() + 0.15 * std::sin(heading), 1.0});
+      }
+      const double share = static_cast<double>(seen) / kSamples;
+      if (table1[area].count(landmark.id) != 0)
+        EXPECT_GE(share, 0.6) << "area " << area << ", landmark " << landmark.id;
+      else
+        EXPECT_LE(share, 0.25) << "area " << area << ", landmark " << landmark.id;
+    }
+  }
+}
+
+TEST(ArmingolRoom, KeepsHalfAMetreFreeAroundTheLoop) {
+  MapReader reader(load_config(VIGIA_SOURCE_DIR "/config/worlds/armingol-room.yaml"), "");
+  const WorldMap world = read_world_map(reader);
+  const std::vector<Eigen::Vector2d> corners{{0.9, 2.0}, {9.4, 2.0}, {9.4, 6.0}, {0.9, 6.0}};
+  const Path dense = Path(corners).resampled(0.05);
+  for (const Eigen::Vector2d& p : dense.points())
+    EXPECT_GE(world.plan.clearance(p), 0.5) << p.transpose();
+}
+
+}  // namespace
+}  // namespace vigia
