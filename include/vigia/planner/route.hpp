@@ -14,7 +14,7 @@ namespace vigia::planner {
 struct RouteParams {
   double robot_radius_m = 0.3;
   double clearance_m = 0.15;  ///< kept beyond the robot's radius where the building allows
-  int iterations = 2000;      ///< of the planner, per leg: never the clock
+  int iterations = 1000;      ///< states that the planner samples per leg: never the clock
   double spacing_m = 0.05;    ///< of the resampled path
 };
 
