@@ -1,19 +1,30 @@
 # Finds what vigia stands on and wraps the libraries that bring no imported target. Used by the
 # build and by the installed package alike.
 
-include(CMakeFindDependencyMacro)
+# Inside the installed package a missing library is find_package(vigia)'s to report; in the build it
+# is an error.
+if(DEFINED CMAKE_FIND_PACKAGE_NAME)
+  include(CMakeFindDependencyMacro)
+  macro(vigia_find)
+    find_dependency(${ARGN})
+  endmacro()
+else()
+  macro(vigia_find)
+    find_package(${ARGN} REQUIRED)
+  endmacro()
+endif()
 
-find_dependency(Eigen3 3.4 NO_MODULE)
-find_dependency(yaml-cpp 0.7)
-find_dependency(OpenCV 4.6 COMPONENTS core imgproc imgcodecs videoio calib3d)
-find_dependency(Threads)
+vigia_find(Eigen3 3.4 NO_MODULE)
+vigia_find(yaml-cpp 0.7)
+vigia_find(OpenCV 4.6 COMPONENTS core imgproc imgcodecs videoio calib3d)
+vigia_find(Threads)
 
 # ViSP's package resets the C++ standard and appends flags for the whole project: undo both.
 set(_vigia_cxx_flags "${CMAKE_CXX_FLAGS}")
 if(DEFINED CMAKE_CXX_STANDARD)
   set(_vigia_cxx_standard "${CMAKE_CXX_STANDARD}")
 endif()
-find_dependency(VISP 3.5)
+vigia_find(VISP 3.5)
 set(CMAKE_CXX_FLAGS "${_vigia_cxx_flags}")
 unset(CMAKE_CXX_STANDARD)
 if(DEFINED _vigia_cxx_standard)
@@ -34,18 +45,18 @@ if(NOT TARGET vigia::opencv)
                                                 opencv_videoio opencv_calib3d)
 endif()
 
-find_dependency(ompl 1.5)
+vigia_find(ompl 1.5)
 if(NOT TARGET vigia::ompl)
   add_library(vigia::ompl INTERFACE IMPORTED)
   target_include_directories(vigia::ompl SYSTEM INTERFACE ${OMPL_INCLUDE_DIRS})
   target_link_libraries(vigia::ompl INTERFACE ${OMPL_LIBRARIES})
 endif()
 
-find_dependency(PkgConfig)
+vigia_find(PkgConfig)
 if(NOT TARGET PkgConfig::vigia_cairo)
   pkg_check_modules(vigia_cairo REQUIRED IMPORTED_TARGET GLOBAL cairo)
 endif()
 
-find_dependency(nlohmann_json 3.11)
-find_dependency(fmt)
-find_dependency(spdlog 1.10)
+vigia_find(nlohmann_json 3.11)
+vigia_find(fmt)
+vigia_find(spdlog 1.10)

@@ -56,9 +56,12 @@ bool fits_flow(const ConfigNode& node) {
   switch (node.kind) {
     case ConfigNode::Kind::null:
       return true;
-    case ConfigNode::Kind::scalar:
-      return node.quoted || std::all_of(node.scalar.begin(), node.scalar.end(),
-                                        [](char c) { return is_plain_text(std::string("x") + c); });
+    case ConfigNode::Kind::scalar: {
+      const std::string written = write_scalar(node);
+      return written.front() == '"' || std::all_of(written.begin(), written.end(), [](char c) {
+               return is_plain_text(std::string("x") + c);
+             });
+    }
     case ConfigNode::Kind::list:
       return std::all_of(node.items.begin(), node.items.end(), [](const auto& item) {
         return item->kind != ConfigNode::Kind::map && fits_flow(*item);
