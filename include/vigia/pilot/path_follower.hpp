@@ -9,9 +9,9 @@
 namespace vigia::pilot {
 
 struct PathFollowerParams {
-  double lookahead_m = 0.35;        ///< distance of the pursued point ahead on the path
+  double lookahead_m = 0.30;        ///< distance of the pursued point ahead on the path
   double turn_in_place_deg = 40.0;  ///< heading error above which the base turns on the spot
-  double corner_deg = 20.0;         ///< the path's bends above this are turned on the spot
+  double corner_deg = 30.0;         ///< the path's bends above this are turned on the spot
   double goal_tolerance_m = 0.05;   ///< arrived when the estimate is this near to the path's end
   double slow_down_m = 0.3;         ///< speed falls linearly over this distance before the end
 };
