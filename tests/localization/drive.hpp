@@ -1,10 +1,11 @@
 #pragma once
 
+#include "localization/room.hpp"
+
 #include <optional>
 #include <utility>
 #include <vector>
 
-#include "localization/room.hpp"
 #include "vigia/core/odometry.hpp"
 #include "vigia/localization/localizer.hpp"
 

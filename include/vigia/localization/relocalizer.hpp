@@ -1,0 +1,110 @@
+#pragma once
+
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "vigia/core/belief.hpp"
+#include "vigia/core/floor_plan.hpp"
+#include "vigia/core/head.hpp"
+#include "vigia/core/landmark.hpp"
+#include "vigia/core/observation.hpp"
+#include "vigia/core/sensor_noise.hpp"
+
+namespace vigia::localization {
+
+struct RelocalizerParams {
+  SensorNoise sensor;  ///< of the head's and the zoom's readings
+  /// Share of right measurements that the χ² gates let pass.
+  double gate_probability = 0.999;
+  /// σ of what the disc's model leaves out: centre in px, and relative size.
+  double centre_floor_px = 0.1;
+  double size_floor = 2e-3;
+  /// Tolerance of the axes' ratio b/a, which serves as a check only.
+  double aspect_tolerance = 0.08;
+  /// Found when the best hypothesis has at least this share of the weight.
+  double found_weight = 0.99;
+  /// −ln of how likely a disc-like sighting is no landmark, beside a sighting explained perfectly.
+  double clutter_cost = 10.0;
+  /// Probability that a landmark that the sweep covered is detected, within these limits.
+  double detection_probability = 0.9;
+  double max_range_m = 7.0;
+  double max_view_angle_deg = 60.0;
+  double min_radius_px = 7.0;
+  /// The robot keeps this clear of every face, m.
+  double min_clearance_m = 0.1;
+};
+
+/// What a robot that stands still saw while it turned its head.
+struct Sweep {
+  /// The discs, at most a few per landmark. The biases of readings are drawn anew for each look.
+  std::vector<EllipseObservation> sightings;
+  /// Every direction that was searched, with a find or without one.
+  std::vector<SensorSnapshot> views;
+};
+
+enum class RelocalizationStatus {
+  found,      ///< one pose explains the sweep far better than any other
+  ambiguous,  ///< several do
+  not_found,  ///< none does
+};
+
+struct Relocalization {
+  RelocalizationStatus status = RelocalizationStatus::not_found;
+  std::vector<PoseHypothesis> hypotheses;  ///< best first, weights add up to one
+};
+
+/// Finds the robot anew, without an idea of where it is, from the discs it sees around it: every
+/// pair of sightings with every pair of landmarks gives a pose in closed form (bearings, and ranges
+/// from the apparent sizes); Gauss–Newton refines it on all sightings that it explains; what it
+/// leaves unexplained, and landmarks that the sweep should have shown, count against it. Walls hide
+/// landmarks, and discs have a front.
+class Relocalizer {
+ public:
+  Relocalizer(LandmarkMap map, FloorPlan plan, const HeadGeometry& geometry,
+              const RelocalizerParams& params);
+
+  /// With a @p prior one sighting is enough, and poses it holds unlikely weigh less; without, at
+  /// least two sightings of different landmarks are needed.
+  Relocalization solve(const Sweep& sweep, const std::optional<Prior>& prior = std::nullopt) const;
+
+ private:
+  struct Match {
+    const EllipseObservation* sighting;
+    const Landmark* landmark;
+  };
+  struct Fit {
+    Pose2 pose;
+    Eigen::Matrix3d covariance;
+    double chi2 = 0.0;
+  };
+  struct Hypothesis {
+    Fit fit;
+    std::vector<Match> matches;
+    double log_weight = 0.0;
+  };
+
+  std::vector<Pose2> seeds(const std::vector<EllipseObservation>& sightings,
+                           const std::optional<Prior>& prior) const;
+  std::optional<Fit> refine(const Pose2& start, const std::vector<Match>& matches,
+                            const std::optional<Prior>& prior) const;
+  std::vector<Match> explain(const Fit& fit,
+                             const std::vector<EllipseObservation>& sightings) const;
+  std::optional<Hypothesis> hypothesis(const Pose2& seed, const Sweep& sweep,
+                                       const std::vector<EllipseObservation>& sightings,
+                                       const std::optional<Prior>& prior) const;
+  static std::set<LandmarkId> landmarks_of(const std::vector<Match>& matches);
+  bool plausible(const Match& match, const Pose2& pose) const;
+  int missed(const Hypothesis& hypothesis, const Sweep& sweep) const;
+  bool should_be_seen(const Landmark& landmark, const Pose2& pose,
+                      const SensorSnapshot& view) const;
+  Eigen::Matrix3d pixel_covariance(const EllipseObservation& sighting) const;
+
+  LandmarkMap map_;
+  FloorPlan plan_;
+  HeadGeometry geometry_;
+  RelocalizerParams params_;
+  double gate_;
+};
+
+}  // namespace vigia::localization

@@ -1,0 +1,284 @@
+#include "vigia/localization/relocalizer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include "vigia/localization/chi_square.hpp"
+#include "vigia/localization/ekf_state.hpp"
+
+namespace vigia::localization {
+namespace {
+
+constexpr int kMaxSteps = 20;
+/// A start covariance wide enough to take in every landmark that a closed-form pose may mean.
+const Eigen::Vector3d kSeedSigma(0.3, 0.3, from_deg(4.0));
+
+/// Two frames of one look that show the same disc count once: they share their biases.
+bool same_disc(const EllipseObservation& a, const EllipseObservation& b) {
+  if (a.sensor.look != b.sensor.look) return false;
+  const auto direction = [](const EllipseObservation& seen) {
+    const Eigen::Vector2d xy = unproject(seen.sensor.intrinsics, {seen.ellipse.u, seen.ellipse.v});
+    return Eigen::Vector3d(camera_in_base({}, seen.sensor.head).linear() *
+                           xy.homogeneous().normalized());
+  };
+  return direction(a).dot(direction(b)) > std::cos(from_deg(2.0));
+}
+
+std::vector<EllipseObservation> distinct(const std::vector<EllipseObservation>& sightings) {
+  std::vector<EllipseObservation> kept;
+  for (const EllipseObservation& seen : sightings) {
+    const bool usable = seen.ellipse.b > 0.0 && measured_disc(seen).allFinite() &&
+                        measured_disc_covariance(seen).allFinite();
+    const bool repeated =
+        std::any_of(kept.begin(), kept.end(),
+                    [&seen](const EllipseObservation& other) { return same_disc(seen, other); });
+    if (usable && !repeated) kept.push_back(seen);
+  }
+  return kept;
+}
+
+/// Where a disc of the given radius stands in the base frame, its range from the longer axis.
+Eigen::Vector2d place(const EllipseObservation& seen, double radius, const HeadGeometry& geometry) {
+  const Intrinsics& intrinsics = seen.sensor.intrinsics;
+  const Eigen::Vector2d xy = unproject(intrinsics, {seen.ellipse.u, seen.ellipse.v});
+  const double depth = radius * std::sqrt(intrinsics.px * intrinsics.py) / seen.ellipse.a;
+  const Eigen::Vector3d p_r =
+      camera_in_base(geometry, seen.sensor.head) * Eigen::Vector3d(depth * xy.homogeneous());
+  return p_r.head<2>();
+}
+
+double direction_of(const Eigen::Vector2d& v) {
+  return std::atan2(v.y(), v.x());
+}
+
+/// The planar pose that takes q_a, q_b (base frame) to p_a, p_b (world): direction from the
+/// difference, position from the means.
+Pose2 align(const Eigen::Vector2d& q_a, const Eigen::Vector2d& q_b, const Eigen::Vector2d& p_a,
+            const Eigen::Vector2d& p_b) {
+  const double theta = wrap_angle(direction_of(p_b - p_a) - direction_of(q_b - q_a));
+  const Eigen::Vector2d mid_q = 0.5 * (q_a + q_b);
+  const Eigen::Vector2d mid_p = 0.5 * (p_a + p_b);
+  return {mid_p.x() - std::cos(theta) * mid_q.x() + std::sin(theta) * mid_q.y(),
+          mid_p.y() - std::sin(theta) * mid_q.x() - std::cos(theta) * mid_q.y(), theta};
+}
+
+Eigen::Matrix3d total_covariance(const DiscMeasurement& image, const Eigen::Matrix3d& R,
+                                 const SensorNoise& noise) {
+  return R + image.dz_dbias * look_covariance(noise) * image.dz_dbias.transpose() +
+         reading_covariance(image, noise);
+}
+
+bool same_place(const Pose2& a, const Pose2& b) {
+  const Eigen::Vector3d apart = difference(a, b);
+  return apart.head<2>().norm() < 0.1 && std::abs(apart.z()) < from_deg(2.0);
+}
+
+}  // namespace
+
+Relocalizer::Relocalizer(LandmarkMap map, FloorPlan plan, const HeadGeometry& geometry,
+                         const RelocalizerParams& params)
+    : map_(std::move(map)),
+      plan_(std::move(plan)),
+      geometry_(geometry),
+      params_(params),
+      gate_(chi_square_quantile(params.gate_probability, 3)) {}
+
+Relocalization Relocalizer::solve(const Sweep& sweep, const std::optional<Prior>& prior) const {
+  const std::vector<EllipseObservation> sightings = distinct(sweep.sightings);
+  std::vector<Hypothesis> found;
+  for (const Pose2& seed : seeds(sightings, prior)) {
+    const bool known = std::any_of(found.begin(), found.end(), [&seed](const Hypothesis& h) {
+      return same_place(h.fit.pose, seed);
+    });
+    if (known) continue;
+    auto candidate = hypothesis(seed, sweep, sightings, prior);
+    if (!candidate) continue;
+    const auto twin = std::find_if(found.begin(), found.end(), [&candidate](const Hypothesis& h) {
+      return same_place(h.fit.pose, candidate->fit.pose);
+    });
+    if (twin == found.end())
+      found.push_back(std::move(*candidate));
+    else if (candidate->log_weight > twin->log_weight)
+      *twin = std::move(*candidate);
+  }
+  if (found.empty()) return {};
+
+  std::stable_sort(found.begin(), found.end(), [](const Hypothesis& a, const Hypothesis& b) {
+    return a.log_weight > b.log_weight;
+  });
+  double sum = 0.0;
+  for (const Hypothesis& h : found) sum += std::exp(h.log_weight - found.front().log_weight);
+  Relocalization result;
+  for (const Hypothesis& h : found) {
+    const double weight = std::exp(h.log_weight - found.front().log_weight) / sum;
+    result.hypotheses.push_back({h.fit.pose, h.fit.covariance, weight});
+  }
+  result.status = result.hypotheses.front().weight >= params_.found_weight
+                      ? RelocalizationStatus::found
+                      : RelocalizationStatus::ambiguous;
+  return result;
+}
+
+std::vector<Pose2> Relocalizer::seeds(const std::vector<EllipseObservation>& sightings,
+                                      const std::optional<Prior>& prior) const {
+  std::vector<Pose2> poses;
+  if (prior) poses.push_back(prior->pose);
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    for (std::size_t j = i + 1; j < sightings.size(); ++j) {
+      for (const Landmark& k : map_.all()) {
+        for (const Landmark& l : map_.all()) {
+          if (k.id == l.id || !disc_radius(k) || !disc_radius(l)) continue;
+          const Eigen::Vector2d q_i = place(sightings[i], *disc_radius(k), geometry_);
+          const Eigen::Vector2d q_j = place(sightings[j], *disc_radius(l), geometry_);
+          const Eigen::Vector2d p_k = k.centre_w().head<2>();
+          const Eigen::Vector2d p_l = l.centre_w().head<2>();
+          // Sizes off the optical axis overstate the range by up to a tenth.
+          const double tolerance = 0.1 + 0.12 * (q_i.norm() + q_j.norm());
+          if (std::abs((q_j - q_i).norm() - (p_l - p_k).norm()) < tolerance)
+            poses.push_back(align(q_i, q_j, p_k, p_l));
+        }
+      }
+    }
+  }
+  return poses;
+}
+
+Eigen::Matrix3d Relocalizer::pixel_covariance(const EllipseObservation& sighting) const {
+  const Eigen::Vector3d floor(params_.centre_floor_px, params_.centre_floor_px, params_.size_floor);
+  Eigen::Matrix3d R = measured_disc_covariance(sighting);
+  R.diagonal() += floor.cwiseAbs2();
+  return R;
+}
+
+std::optional<Relocalizer::Fit> Relocalizer::refine(const Pose2& start,
+                                                    const std::vector<Match>& matches,
+                                                    const std::optional<Prior>& prior) const {
+  Fit fit;
+  fit.pose = start;
+  for (int step = 0; step < kMaxSteps; ++step) {
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+    fit.chi2 = 0.0;
+    if (prior) {
+      information = prior->covariance.inverse();
+      const Eigen::Vector3d e = difference(prior->pose, fit.pose);
+      gradient = information * e;
+      fit.chi2 = e.dot(gradient);
+    }
+    for (const Match& match : matches) {
+      const auto image =
+          predict_disc(*match.landmark, match.sighting->sensor, geometry_, fit.pose, {});
+      if (!image) return std::nullopt;
+      const Eigen::Matrix3d S =
+          total_covariance(*image, pixel_covariance(*match.sighting), params_.sensor);
+      const auto factor = S.llt();
+      const Eigen::Vector3d e = measured_disc(*match.sighting) - image->z;
+      const Eigen::Matrix3d weighted = factor.solve(image->dz_dpose);
+      information += image->dz_dpose.transpose() * weighted;
+      gradient += weighted.transpose() * e;
+      fit.chi2 += e.dot(factor.solve(e));
+    }
+    const auto factor = information.ldlt();
+    const Eigen::Vector3d move = factor.solve(gradient);
+    if (!move.allFinite()) return std::nullopt;
+    fit.covariance = factor.solve(Eigen::Matrix3d::Identity());
+    if (move.cwiseAbs().maxCoeff() < 1e-6) return fit;
+    fit.pose = Pose2::from_vector(fit.pose.vector() + move);
+  }
+  return std::nullopt;
+}
+
+bool Relocalizer::plausible(const Match& match, const Pose2& pose) const {
+  const HeadAngles& head = match.sighting->sensor.head;
+  const Eigen::Isometry3d wMc = to_isometry(pose) * camera_in_base(geometry_, head);
+  if (!plan_.line_of_sight(wMc.translation(), match.landmark->centre_w())) return false;
+  const auto image = disc_image(*match.landmark, match.sighting->sensor.intrinsics, wMc);
+  if (!image) return false;
+  const Ellipse& seen = match.sighting->ellipse;
+  return std::abs(image->b / image->a - seen.b / seen.a) < params_.aspect_tolerance;
+}
+
+std::vector<Relocalizer::Match> Relocalizer::explain(
+    const Fit& fit, const std::vector<EllipseObservation>& sightings) const {
+  std::vector<Match> matches;
+  for (const EllipseObservation& seen : sightings) {
+    Match best{&seen, nullptr};
+    double least = gate_;
+    for (const Landmark& landmark : map_.all()) {
+      const auto image = predict_disc(landmark, seen.sensor, geometry_, fit.pose, {});
+      if (!image) continue;
+      const Eigen::Matrix3d S = total_covariance(*image, pixel_covariance(seen), params_.sensor) +
+                                image->dz_dpose * fit.covariance * image->dz_dpose.transpose();
+      const Eigen::Vector3d e = measured_disc(seen) - image->z;
+      const double nis = e.dot(S.llt().solve(e));
+      if (nis > least || !plausible({&seen, &landmark}, fit.pose)) continue;
+      least = nis;
+      best.landmark = &landmark;
+    }
+    if (best.landmark != nullptr) matches.push_back(best);
+  }
+  return matches;
+}
+
+bool Relocalizer::should_be_seen(const Landmark& landmark, const Pose2& pose,
+                                 const SensorSnapshot& view) const {
+  const Eigen::Isometry3d wMc = to_isometry(pose) * camera_in_base(geometry_, view.head);
+  const auto image = disc_image(landmark, view.intrinsics, wMc);
+  if (!image || image->a < params_.min_radius_px) return false;
+  const double margin = 2.0 * image->a;
+  if (!in_image(view.intrinsics, {image->u, image->v}, margin)) return false;
+  const Eigen::Vector3d line = wMc.translation() - landmark.centre_w();
+  const double cosine = line.normalized().dot(landmark.normal_w());
+  return line.norm() <= params_.max_range_m &&
+         cosine >= std::cos(from_deg(params_.max_view_angle_deg)) &&
+         plan_.line_of_sight(wMc.translation(), landmark.centre_w());
+}
+
+std::set<LandmarkId> Relocalizer::landmarks_of(const std::vector<Match>& matches) {
+  std::set<LandmarkId> ids;
+  for (const Match& match : matches) ids.insert(match.landmark->id);
+  return ids;
+}
+
+int Relocalizer::missed(const Hypothesis& hypothesis, const Sweep& sweep) const {
+  const std::set<LandmarkId> seen = landmarks_of(hypothesis.matches);
+  return static_cast<int>(
+      std::count_if(map_.all().begin(), map_.all().end(), [&](const Landmark& landmark) {
+        return seen.count(landmark.id) == 0 &&
+               std::any_of(sweep.views.begin(), sweep.views.end(), [&](const SensorSnapshot& view) {
+                 return should_be_seen(landmark, hypothesis.fit.pose, view);
+               });
+      }));
+}
+
+std::optional<Relocalizer::Hypothesis> Relocalizer::hypothesis(
+    const Pose2& seed, const Sweep& sweep, const std::vector<EllipseObservation>& sightings,
+    const std::optional<Prior>& prior) const {
+  if (plan_.clearance(seed.position()) < params_.min_clearance_m - 3.0 * kSeedSigma.x())
+    return std::nullopt;
+  Hypothesis h;
+  h.fit.pose = seed;
+  h.fit.covariance = kSeedSigma.cwiseAbs2().asDiagonal();
+  // The first pass takes what the rough pose explains, the second what the refined one does.
+  for (int pass = 0; pass < 2; ++pass) {
+    h.matches = explain(h.fit, sightings);
+    if (landmarks_of(h.matches).size() < (prior ? 1U : 2U)) return std::nullopt;
+    const auto fit = refine(h.fit.pose, h.matches, prior);
+    if (!fit) return std::nullopt;
+    h.fit = *fit;
+  }
+  const double dof = 3.0 * static_cast<double>(h.matches.size()) - (prior ? 0.0 : 3.0);
+  if (h.fit.chi2 > chi_square_quantile(params_.gate_probability, dof)) return std::nullopt;
+  if (plan_.clearance(h.fit.pose.position()) < params_.min_clearance_m) return std::nullopt;
+  const auto unexplained = static_cast<double>(sightings.size() - h.matches.size());
+  h.log_weight = -0.5 * h.fit.chi2 - params_.clutter_cost * unexplained +
+                 std::log(1.0 - params_.detection_probability) * missed(h, sweep);
+  return h;
+}
+
+}  // namespace vigia::localization

@@ -1,0 +1,174 @@
+#include "vigia/localization/relocalizer.hpp"
+
+#include "localization/room.hpp"
+
+#include <cmath>
+#include <set>
+
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+namespace vigia::localization {
+namespace {
+
+using test::room_landmarks;
+using test::room_plan;
+
+constexpr double kPixelSigma = 0.05;
+
+/// A camera that turns once round in steps of 30° at the shortest zoom; each view is a look.
+struct SweepMaker {
+  HeadGeometry geometry;
+  SensorNoise noise;
+  LandmarkMap map = room_landmarks();
+  FloorPlan plan = room_plan();
+
+  bool detectable(const Landmark& landmark, const Ellipse& image, const Intrinsics& intrinsics,
+                  const Eigen::Vector3d& eye) const {
+    const Eigen::Vector3d line = eye - landmark.centre_w();
+    return image.a >= 6.0 && in_image(intrinsics, {image.u, image.v}, 2.0 * image.a) &&
+           line.normalized().dot(landmark.normal_w()) > std::cos(from_deg(65.0)) &&
+           plan.line_of_sight(eye, landmark.centre_w());
+  }
+
+  Sweep operator()(const Pose2& truth, RandomStream& random) const {
+    Sweep sweep;
+    for (int i = 0; i < 12; ++i) {
+      SensorSnapshot view;
+      view.look = i + 1;
+      view.head = {wrap_angle(from_deg(30.0 * i)), from_deg(8.0)};
+      view.intrinsics = test::zoom_calibration().at(8.0);
+      sweep.views.push_back(view);
+      const LookBias bias = test::draw_bias(random, noise);
+      const HeadAngles head{view.head.pan + bias.pan, view.head.tilt + bias.tilt};
+      const Eigen::Isometry3d wMc = to_isometry(truth) * camera_in_base(geometry, head);
+      for (const Landmark& landmark : map.all()) {
+        const auto image = disc_image(landmark, view.intrinsics, wMc);
+        if (image && detectable(landmark, *image, view.intrinsics, wMc.translation()))
+          sweep.sightings.push_back(
+              test::observe(landmark, view, geometry, truth, bias, 0.0, kPixelSigma, random));
+      }
+    }
+    return sweep;
+  }
+};
+
+std::size_t landmarks_seen(const Sweep& sweep) {
+  std::set<LandmarkId> ids;
+  for (const auto& seen : sweep.sightings) ids.insert(*seen.expected);
+  return ids.size();
+}
+
+Pose2 random_pose(const FloorPlan& plan, RandomStream& random) {
+  for (;;) {
+    const Pose2 pose{random.uniform(0.0, 12.0), random.uniform(0.0, 7.0),
+                     random.uniform(-kPi, kPi)};
+    if (plan.clearance(pose.position()) > 0.4) return pose;
+  }
+}
+
+bool is_near(const Pose2& a, const Pose2& b) {
+  const Eigen::Vector3d apart = difference(a, b);
+  return apart.head<2>().norm() < 0.3 && std::abs(apart.z()) < from_deg(5.0);
+}
+
+Relocalizer relocalizer_for(const SweepMaker& maker) {
+  return Relocalizer(maker.map, maker.plan, maker.geometry, {});
+}
+
+/// How often the relocalizer was right, wrong though sure, or unsure, over random poses from which
+/// at least two landmarks are seen; @p clutter adds a dark disc on the wall that is no landmark.
+struct Tally {
+  int right = 0;
+  int wrong = 0;
+  double nees = 0.0;
+};
+
+Tally tally(int poses, bool clutter, std::uint64_t seed) {
+  const SweepMaker make_sweep;
+  const Relocalizer relocalizer = relocalizer_for(make_sweep);
+  RandomStream random(seed, "relocalizer");
+  SweepMaker clutter_maker;
+  clutter_maker.map =
+      LandmarkMap({test::disc(9, 0.0, 1.5, 1.2, 0.0), test::disc(10, 12.0, 5.0, 1.9, 180.0)});
+  Tally counts;
+  while (poses > 0) {
+    const Pose2 truth = random_pose(make_sweep.plan, random);
+    Sweep sweep = make_sweep(truth, random);
+    if (landmarks_seen(sweep) < 2) continue;
+    --poses;
+    if (clutter) {
+      const Sweep extra = clutter_maker(truth, random);
+      sweep.sightings.insert(sweep.sightings.end(), extra.sightings.begin(), extra.sightings.end());
+    }
+    const Relocalization result = relocalizer.solve(sweep);
+    if (result.status != RelocalizationStatus::found) continue;
+    const PoseHypothesis& best = result.hypotheses.front();
+    const Eigen::Vector3d e = difference(best.pose, truth);
+    is_near(best.pose, truth) ? ++counts.right : ++counts.wrong;
+    if (is_near(best.pose, truth)) counts.nees += e.dot(best.covariance.inverse() * e);
+  }
+  counts.nees /= counts.right;
+  return counts;
+}
+
+TEST(Relocalizer, FindsTheRobotAtRandomPosesAndIsNotSureOfAWrongOne) {
+  constexpr int kPoses = 300;
+  const Tally counts = tally(kPoses, false, 1);
+  EXPECT_GE(counts.right, 0.95 * kPoses);
+  EXPECT_LE(counts.wrong, 0.01 * kPoses);
+  // 3 degrees of freedom; the floors of the pixel noise make the claim a little cautious.
+  EXPECT_LT(counts.nees / 3.0, 1.0 + 4.0 * std::sqrt(2.0 / (3.0 * kPoses)));  // k = 4
+  EXPECT_GT(counts.nees / 3.0, 0.6);
+}
+
+TEST(Relocalizer, IsNotMisledByDiscsThatAreNoLandmarks) {
+  constexpr int kPoses = 150;
+  const Tally counts = tally(kPoses, true, 2);
+  std::printf("clutter right %d wrong %d\n", counts.right, counts.wrong);
+  EXPECT_GE(counts.right, 0.9 * kPoses);
+  EXPECT_LE(counts.wrong, 0.01 * kPoses);
+}
+
+TEST(Relocalizer, SaysAmbiguousInARoomThatLooksTheSameFromTwoPlaces) {
+  SweepMaker make_sweep;
+  make_sweep.map =
+      LandmarkMap({test::disc(1, 2.0, 0.0, 1.5, 90.0), test::disc(2, 5.0, 0.0, 1.5, 90.0),
+                   test::disc(3, 10.0, 7.0, 1.5, -90.0), test::disc(4, 7.0, 7.0, 1.5, -90.0)});
+  make_sweep.plan = FloorPlan({{0.0, 0.0}, {12.0, 0.0}, {12.0, 7.0}, {0.0, 7.0}}, 2.8, {}, {});
+  RandomStream random(3, "symmetric");
+  const Pose2 truth{3.0, 2.5, 0.4};
+  const Pose2 mirrored{9.0, 4.5, 0.4 + kPi};
+  const Relocalization result = relocalizer_for(make_sweep).solve(make_sweep(truth, random));
+  ASSERT_EQ(result.status, RelocalizationStatus::ambiguous);
+  ASSERT_GE(result.hypotheses.size(), 2U);
+  for (const Pose2& pose : {truth, mirrored}) {
+    EXPECT_TRUE(is_near(result.hypotheses[0].pose, pose) ||
+                is_near(result.hypotheses[1].pose, pose));
+  }
+}
+
+TEST(Relocalizer, OneSightingIsNotEnoughUnlessThereIsAPrior) {
+  const SweepMaker make_sweep;
+  RandomStream random(4, "single");
+  const Pose2 truth{4.0, 2.5, 0.4};
+  Sweep sweep = make_sweep(truth, random);
+  ASSERT_GE(sweep.sightings.size(), 2U);
+  sweep.sightings.resize(1);
+  const Relocalizer relocalizer = relocalizer_for(make_sweep);
+  EXPECT_EQ(relocalizer.solve(sweep).status, RelocalizationStatus::not_found);
+  const Eigen::Vector3d sigma(0.2, 0.2, from_deg(4.0));
+  const Prior prior{{4.1, 2.4, 0.43}, sigma.cwiseAbs2().asDiagonal()};
+  const Relocalization result = relocalizer.solve(sweep, prior);
+  ASSERT_EQ(result.status, RelocalizationStatus::found);
+  EXPECT_TRUE(is_near(result.hypotheses.front().pose, truth));
+}
+
+TEST(Relocalizer, FindsNothingInAnEmptySweep) {
+  const Relocalization result = relocalizer_for({}).solve({});
+  EXPECT_EQ(result.status, RelocalizationStatus::not_found);
+  EXPECT_TRUE(result.hypotheses.empty());
+}
+
+}  // namespace
+}  // namespace vigia::localization
