@@ -219,7 +219,7 @@ void MapReader::resolve(const std::string& key, std::shared_ptr<ConfigNode> valu
 }
 
 bool MapReader::has(const std::string& key) const {
-  return find(key) != nullptr;
+  return ask(key) != nullptr;
 }
 
 const SourceLocation& MapReader::where() const {
