@@ -1,6 +1,8 @@
 #include "sheet.hpp"
 
 #include <cmath>
+#include <map>
+#include <regex>
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
@@ -37,6 +39,22 @@ cairo_surface_t* make_surface(const std::filesystem::path& file, std::string* by
   }
   throw InputError({file.string()},
                    "a picture's name ends in .png, .svg or .pdf, found \"" + ending + "\"");
+}
+
+// Cairo names the groups of an SVG by a number that counts through the process: number them anew in
+// the order of their appearance.
+std::string renumber_groups(const std::string& svg) {
+  static const std::regex name("surface([0-9]+)");
+  std::map<std::string, std::size_t> numbers;
+  std::string renumbered;
+  auto rest = svg.cbegin();
+  for (std::sregex_iterator match(svg.begin(), svg.end(), name), end; match != end; ++match) {
+    const std::size_t number = numbers.emplace((*match)[1], numbers.size()).first->second;
+    renumbered.append(rest, (*match)[1].first);
+    renumbered += std::to_string(number);
+    rest = (*match)[1].second;
+  }
+  return renumbered.append(rest, svg.cend());
 }
 
 void set_source(cairo_t* context, Colour colour) {
@@ -176,7 +194,7 @@ void Sheet::save() {
   if (status != CAIRO_STATUS_SUCCESS)
     throw InputError({file_.string()},
                      std::string("the picture can't be drawn: ") + cairo_status_to_string(status));
-  write_file(file_, *bytes_);
+  write_file(file_, file_.extension() == ".svg" ? renumber_groups(*bytes_) : *bytes_);
 }
 
 }  // namespace vigia::report

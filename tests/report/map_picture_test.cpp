@@ -81,7 +81,7 @@ TEST_F(MapPicture, SameDriveGivesTheSameBytesInEveryFormat) {
   for (const std::string ending : {".png", ".svg", ".pdf"}) {
     draw_map(drive_, folder_ / ("first" + ending));
     draw_map(drive_, folder_ / ("second" + ending));
-    EXPECT_EQ(bytes_of(folder_ / ("first" + ending)), bytes_of(folder_ / ("second" + ending)))
+    EXPECT_TRUE(bytes_of(folder_ / ("first" + ending)) == bytes_of(folder_ / ("second" + ending)))
         << ending;
   }
 }
