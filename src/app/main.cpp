@@ -1,1 +1,52 @@
-int main() { return 0; }
+#include <exception>
+
+#include <CLI/CLI.hpp>
+#include <opencv2/core.hpp>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include "commands.hpp"
+#include "vigia/core/error.hpp"
+
+namespace {
+
+/// Exit statuses of the program (DESIGN: 0 done, 1 the mission or a check failed, 2 wrong input).
+constexpr int kWrongInput = 2;
+constexpr int kBroken = 3;
+
+void log_to_stderr() {
+  auto logger = spdlog::stderr_color_mt("vigia");
+  logger->set_pattern("%^%l%$: %v");
+  spdlog::set_default_logger(logger);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  log_to_stderr();
+  cv::setNumThreads(1);
+  CLI::App app{"vigia keeps a mobile robot localized by looking at the right landmark, at the right "
+               "moment, at the right zoom."};
+  app.set_version_flag("--version", VIGIA_VERSION);
+  app.require_subcommand(1);
+  int status = 0;
+  vigia::app::add_run(app, status);
+  vigia::app::add_check(app, status);
+  vigia::app::add_track(app, status);
+  vigia::app::add_evaluate(app, status);
+  try {
+    app.parse(argc, argv);
+    return status;
+  } catch (const CLI::Success& success) {
+    return app.exit(success);
+  } catch (const CLI::ParseError& error) {
+    app.exit(error);
+    return kWrongInput;
+  } catch (const vigia::InputError& error) {
+    spdlog::error("{}", error.what());
+    return kWrongInput;
+  } catch (const std::exception& error) {
+    spdlog::critical("unexpected: {}", error.what());
+    return kBroken;
+  }
+}

@@ -78,8 +78,8 @@ void DriveScorer::on_start(const mission::MissionSetup& setup, std::uint64_t see
   impl_->score.seed = seed;
   impl_->score.primary = setup.primary;
   for (std::size_t i = 0; i < setup.localizers.size(); ++i)
-    impl_->sums.emplace_back(PosteriorBound(setup.prior.covariance, setup.robot.robot.sensor,
-                                            setup.robot.robot.head));
+    impl_->sums.emplace_back(PosteriorBound(setup.prior.covariance, setup.robot.robot.head,
+                                            setup.robot.robot.sensor));
   impl_->last_zoom_mm = setup.robot.initial_zoom_mm;
 }
 
@@ -101,15 +101,17 @@ void DriveScorer::Impl::score_localizer(const mission::Tick& tick, std::size_t i
   if (fused && update->landmark) {
     const auto& angle = tick.truth.look_angle_error;
     sum.bound.update(tick.truth.pose, *setup->world.landmarks.find(*update->landmark),
-                     *tick.observation, {angle.pan, angle.tilt, tick.truth.look_log_focal_error});
+                     tick.observation->sensor,
+                     {angle.pan, angle.tilt, tick.truth.look_log_focal_error},
+                     localization::measured_disc_covariance(*tick.observation));
   }
   const Eigen::Vector3d error = difference(belief.pose, tick.truth.pose);
   const double squared = error.head<2>().squaredNorm();
-  const double nees = normalised_squared_error(error, belief.covariance);
+  const double nees = evaluation::nees({tick.truth.pose, belief.pose, belief.covariance});
   sum.squared_position += squared;
   sum.squared_heading += error.z() * error.z();
   sum.nees += nees;
-  sum.bound_trace += sum.bound.pose_covariance().topLeftCorner<2, 2>().trace();
+  sum.bound_trace += sum.bound.covariance().topLeftCorner<2, 2>().trace();
   sum.score.position_max_m = std::max(sum.score.position_max_m, std::sqrt(squared));
   sum.score.position_final_m = std::sqrt(squared);
   sum.score.heading_final_rad = std::abs(error.z());
@@ -122,7 +124,7 @@ void DriveScorer::Impl::score_look(const mission::Tick& tick, LocalizerSums& sum
   auto& looks = sum.score.looks;
   if (looks.empty() || looks.back().look != tick.look) looks.push_back({tick.look});
   looks.back() = {tick.look, nees, squared,
-                  sum.bound.pose_covariance().topLeftCorner<2, 2>().trace()};
+                  sum.bound.covariance().topLeftCorner<2, 2>().trace()};
 }
 
 void DriveScorer::Impl::score_perception(const mission::Tick& tick) {

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "vigia/evaluation/drive_score.hpp"
+#include "vigia/mission/listener.hpp"
+#include "vigia/report/map_picture.hpp"
+
+namespace vigia::app {
+
+/// Collects what map.png shows of a drive.
+class DrivePicture : public mission::Listener {
+ public:
+  void on_start(const mission::MissionSetup& setup, std::uint64_t seed) override;
+  void on_tick(const mission::Tick& tick) override;
+
+  void draw(const evaluation::DriveScore& score, const std::filesystem::path& png) const;
+
+ private:
+  void note_look(const mission::Tick& tick);
+
+  const mission::MissionSetup* setup_ = nullptr;
+  std::vector<Pose2> truth_;
+  std::vector<report::MapPose> estimate_;
+  std::vector<Pose2> odometry_;
+  std::vector<report::MapLook> looks_;
+  LookId look_ = 0;
+};
+
+}  // namespace vigia::app

@@ -1,0 +1,32 @@
+#include "progress.hpp"
+
+#include <unistd.h>
+
+#include <cstdio>
+
+#include <fmt/format.h>
+
+namespace vigia::app {
+
+Progress::Progress(bool quiet) : shown_(!quiet && ::isatty(STDERR_FILENO) != 0) {}
+
+void Progress::on_start(const mission::MissionSetup& setup, std::uint64_t /*seed*/) {
+  length_m_ = setup.path.length();
+}
+
+void Progress::on_tick(const mission::Tick& tick) {
+  if (!shown_ || length_m_ <= 0.0) return;
+  const int percent = static_cast<int>(100.0 * tick.station_m / length_m_);
+  if (percent == percent_) return;
+  percent_ = percent;
+  const double sigma = tick.localizers[tick.primary].belief->position_sigma();
+  fmt::print(stderr, "\r{:3} %  t = {:6.1f} s  σ = {:5.1f} cm  {:<8}", percent, tick.now.seconds(),
+             100.0 * sigma, to_string(tick.gaze));
+  std::fflush(stderr);
+}
+
+void Progress::on_finish(mission::Outcome /*outcome*/, Stamp /*end*/) {
+  if (shown_) fmt::print(stderr, "\r{:60}\r", "");
+}
+
+}  // namespace vigia::app

@@ -1,0 +1,89 @@
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "commands.hpp"
+#include "drive_picture.hpp"
+#include "frame_album.hpp"
+#include "progress.hpp"
+#include "vigia/evaluation/drive_score.hpp"
+#include "vigia/mission/mission.hpp"
+#include "vigia/mission/run_folder.hpp"
+
+namespace vigia::app {
+namespace {
+
+struct RunOptions {
+  std::string mission;
+  std::uint64_t seed = 1;
+  std::string out;
+  std::vector<std::string> overrides;
+  bool json = false;
+  bool quiet = false;
+};
+
+void print_summary(const evaluation::DriveScore& score, const std::string& folder) {
+  fmt::print("{}  seed {}  {} after {:.1f} s\n\n", score.mission, score.seed,
+             to_string(score.outcome), score.sim_s);
+  fmt::print("{:<10} {:>10} {:>10} {:>10} {:>9} {:>9} {:>7} {:>8} {:>9}\n", "localizer",
+             "final cm", "rms cm", "max cm", "final °", "rms °", "NEES/3", "limit cm", "lost s");
+  for (const auto& [name, s] : score.localizers) {
+    fmt::print("{:<10} {:>10.2f} {:>10.2f} {:>10.2f} {:>9.3f} {:>9.3f} {:>7.2f} {:>8.2f} {:>9.1f}\n",
+               name, 100 * s.position_final_m, 100 * s.position_rmse_m, 100 * s.position_max_m,
+               to_deg(s.heading_final_rad), to_deg(s.heading_rmse_rad), s.nees_mean / 3.0,
+               100 * s.pcrlb_position_rms_m, s.lost_s);
+  }
+  const auto& p = score.perception;
+  fmt::print("\n{} looks, {} stops ({:.1f} s), centring {:.2f} px rms, {:.1f} px max, {} losses\n",
+             p.looks, p.stops, p.stopped_s, p.centring_rms_px, p.centring_max_px,
+             p.target_losses);
+  fmt::print("\nrun folder: {}\npicture:    {}/map.png\n", folder, folder);
+}
+
+int run(const RunOptions& options) {
+  const mission::MissionSetup setup = mission::load_mission(options.mission, options.overrides);
+  const std::string out = options.out.empty()
+                              ? fmt::format("runs/{}-{}", setup.name, options.seed)
+                              : options.out;
+  mission::RunFolder folder(out);
+  evaluation::DriveScorer scorer;
+  DrivePicture picture;
+  FrameAlbum album;
+  Progress progress(options.quiet || options.json);
+  const auto outcome = mission::run_mission(setup, options.seed,
+                                            {&scorer, &picture, &album, &progress, &folder});
+  const std::string summary = evaluation::summary_json(scorer.score());
+  folder.folder().add("summary.json", summary);
+  folder.folder().make("frames");
+  album.write(folder.folder().staging() / "frames");
+  picture.draw(scorer.score(), folder.folder().staging() / "map.png");
+  folder.folder().commit();
+  if (options.json)
+    std::cout << summary;
+  else
+    print_summary(scorer.score(), out);
+  return outcome == mission::Outcome::arrived ? 0 : 1;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, int& status) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command = app.add_subcommand("run", "Run one mission and write its run folder");
+  command->add_option("mission", options->mission, "Mission file (YAML)")->required();
+  command->add_option("--seed", options->seed, "Seed of every random stream")
+      ->capture_default_str();
+  command->add_option("--out", options->out, "Run folder (default runs/<mission>-<seed>)");
+  command->add_option("--set", options->overrides,
+                      "Override a key of the resolved mission, e.g. --set planner.policy=random")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  command->add_flag("--json", options->json, "Print summary.json on stdout");
+  command->add_flag("--quiet", options->quiet, "No progress line");
+  command->callback([options, &status] { status = run(*options); });
+}
+
+}  // namespace vigia::app

@@ -1,0 +1,84 @@
+#include "vigia/evaluation/seed_statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace vigia::evaluation {
+namespace {
+
+/// Of the bootstrap, the same in every report.
+constexpr std::uint64_t kBootstrapSeed = 1;
+
+template <typename Value>
+Estimate mean_of(const std::vector<DriveScore>& scores, Value value) {
+  std::vector<double> values;
+  values.reserve(scores.size());
+  for (const auto& score : scores) values.push_back(value(score));
+  return paired_difference(values, std::vector<double>(values.size(), 0.0));
+}
+
+/// NEES at the last fused reading of each look that every drive made.
+std::vector<std::vector<double>> look_nees(const std::vector<DriveScore>& scores,
+                                           const std::string& name) {
+  std::size_t looks = scores.front().localizers.at(name).looks.size();
+  for (const auto& score : scores)
+    looks = std::min(looks, score.localizers.at(name).looks.size());
+  std::vector<std::vector<double>> nees(scores.size());
+  for (std::size_t run = 0; run < scores.size(); ++run)
+    for (std::size_t k = 0; k < looks; ++k)
+      nees[run].push_back(scores[run].localizers.at(name).looks[k].nees);
+  return nees;
+}
+
+LocalizerStatistics localizer_statistics(const std::vector<DriveScore>& scores,
+                                         const std::string& name) {
+  const auto mean = [&](double LocalizerScore::*part) {
+    return mean_of(scores, [&](const DriveScore& s) { return s.localizers.at(name).*part; });
+  };
+  LocalizerStatistics statistics;
+  statistics.position_final = mean(&LocalizerScore::position_final_m);
+  statistics.heading_final = mean(&LocalizerScore::heading_final_rad);
+  statistics.position_rmse = mean(&LocalizerScore::position_rmse_m);
+  statistics.position_max = mean(&LocalizerScore::position_max_m);
+  statistics.nees_per_dof = mean(&LocalizerScore::nees_mean).value / 3.0;
+
+  std::vector<double> errors;
+  std::vector<double> bounds;
+  double bound_sum = 0.0;
+  for (const auto& score : scores) {
+    const auto& s = score.localizers.at(name);
+    errors.push_back(s.position_rmse_m * s.position_rmse_m);
+    bounds.push_back(s.pcrlb_position_rms_m * s.pcrlb_position_rms_m);
+    bound_sum += bounds.back();
+  }
+  statistics.bound_rms = std::sqrt(bound_sum / static_cast<double>(scores.size()));
+  statistics.pcrlb_ratio = evaluation::pcrlb_ratio(errors, bounds, kBootstrapSeed);
+
+  const auto nees = look_nees(scores, name);
+  statistics.anees_looks = static_cast<int>(nees.front().size());
+  if (statistics.anees_looks > 0) statistics.anees_in_band = anees(nees, 3).inside_band;
+  return statistics;
+}
+
+}  // namespace
+
+SeedStatistics summarise(const std::vector<DriveScore>& scores) {
+  if (scores.size() < 2) throw std::invalid_argument("statistics need at least two drives");
+  SeedStatistics statistics;
+  statistics.runs = static_cast<int>(scores.size());
+  for (const auto& score : scores) {
+    if (score.outcome == mission::Outcome::arrived) ++statistics.arrived;
+    if (score.outcome == mission::Outcome::collided) ++statistics.collided;
+  }
+  statistics.arrived_share = clopper_pearson(statistics.arrived, statistics.runs);
+  statistics.looks =
+      mean_of(scores, [](const DriveScore& s) { return static_cast<double>(s.perception.looks); });
+  statistics.centring_rms_px =
+      mean_of(scores, [](const DriveScore& s) { return s.perception.centring_rms_px; });
+  for (const auto& [name, score] : scores.front().localizers)
+    statistics.localizers[name] = localizer_statistics(scores, name);
+  return statistics;
+}
+
+}  // namespace vigia::evaluation

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "vigia/core/actuation.hpp"
+#include "vigia/mission/setup.hpp"
+
+namespace vigia::mission {
+
+/// The sweep of a lost robot that stands still and turns its head: one stop after another, from
+/// the present side of the pan range to the other, zoomed out.
+class LookAround {
+ public:
+  explicit LookAround(const MissionSetup& setup) : setup_(setup) {}
+
+  /// Plans a sweep from where the head points now.
+  void begin(const HeadReading& head);
+
+  /// Rates for the head, towards the present stop.
+  HeadRates step(const HeadReading& head) const;
+  /// Whether the head has stood at the present stop long enough for a picture.
+  bool ready(Stamp now, const HeadReading& head);
+  /// A picture was taken: on to the next stop. False when that was the last.
+  bool next();
+  int sweeps() const { return sweeps_; }
+
+ private:
+  const MissionSetup& setup_;
+  std::vector<HeadAngles> stops_;
+  std::size_t stop_ = 0;
+  std::optional<Stamp> settled_since_;
+  int sweeps_ = 0;
+};
+
+}  // namespace vigia::mission

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "vigia/core/gaze.hpp"
+#include "vigia/mission/setup.hpp"
+#include "vigia/planner/look_policy.hpp"
+
+namespace vigia::mission {
+
+/// Decides when to look and at what: trigger, policy, and the landmarks that failed lately.
+class LookScheduler {
+ public:
+  LookScheduler(const MissionSetup& setup, const InformationModel& information,
+                std::uint64_t seed);
+
+  /// What is demanded now; the planner's slow rate is kept inside.
+  planner::LookDemand demand(Stamp now, const Belief& belief, double travelled_m);
+
+  /// The next gaze order, or nothing when no landmark will do.
+  std::optional<GazeOrder> choose(Stamp now, const Belief& belief, const HeadReading& head,
+                                  double station_m);
+
+  /// A number for an acquisition that no policy chose (a stop of the search).
+  LookId next_look() { return next_look_++; }
+
+  /// The landmark could not be acquired or held: it is left out for a while.
+  void failed(Stamp now, LandmarkId landmark);
+  /// An observation was fused.
+  void fused(double travelled_m) { trigger_.looked(travelled_m); }
+
+ private:
+  const MissionSetup& setup_;
+  const InformationModel& information_;
+  planner::Visibility visibility_;
+  std::unique_ptr<planner::LookPolicy> policy_;
+  planner::LookTrigger trigger_;
+  planner::LookDemand last_ = planner::LookDemand::none;
+  std::optional<Stamp> asked_;
+  LookId next_look_ = 1;
+  std::vector<std::pair<LandmarkId, Stamp>> failures_;
+};
+
+}  // namespace vigia::mission

@@ -1,0 +1,271 @@
+#include "loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vigia/localization/odometry_localizer.hpp"
+
+namespace vigia::mission {
+namespace {
+
+/// The true start: drawn round the mission's start with the deviation that the prior states.
+Pose2 draw_start(const MissionSetup& setup, std::uint64_t seed) {
+  RandomStream stream(seed, "start");
+  const double dx = setup.start_sigma_m * stream.normal();
+  const double dy = setup.start_sigma_m * stream.normal();
+  const double dtheta = setup.start_sigma_rad * stream.normal();
+  return {setup.start.x + dx, setup.start.y + dy, wrap_angle(setup.start.theta + dtheta)};
+}
+
+std::unique_ptr<localization::Localizer> make_localizer(const std::string& name,
+                                                        const MissionSetup& setup) {
+  if (name == "odometry")
+    return std::make_unique<localization::OdometryLocalizer>(setup.ekf.odometry);
+  return std::make_unique<localization::EkfLocalizer>(
+      setup.world.landmarks, setup.robot.robot.head, setup.ekf, setup.world.plan);
+}
+
+localization::RelocalizerParams relocalizer_params(const MissionSetup& setup) {
+  localization::RelocalizerParams params;
+  params.sensor = setup.ekf.sensor;
+  return params;
+}
+
+}  // namespace
+
+Loop::Loop(const MissionSetup& setup, std::uint64_t seed, const std::vector<Listener*>& listeners)
+    : setup_(setup),
+      seed_(seed),
+      listeners_(listeners),
+      simulator_(setup.robot, setup.world, setup.appearance, draw_start(setup, seed), seed),
+      information_(setup.robot.robot.head, setup.robot.zoom,
+                   {setup.ekf.sensor, setup.look.radius_px}),
+      relocalizer_(setup.world.landmarks, setup.world.plan, setup.robot.robot.head,
+                   relocalizer_params(setup)),
+      scheduler_(setup, information_, seed),
+      watcher_(setup.tracker, setup.robot.robot.head, setup.ekf.sensor),
+      gaze_(setup.robot.robot.head, setup.robot.robot.head_limits, setup.robot.zoom, setup.gaze),
+      base_motion_({setup.robot.robot.base, setup.tick_s}),
+      pilot_(setup.path, setup.robot.robot.base, setup.pilot),
+      look_around_(setup),
+      waypoints_(setup.waypoints),
+      dt_(Duration::from_seconds(setup.tick_s)) {
+  for (const auto& name : setup.localizers) {
+    if (name == setup.primary) primary_ = localizers_.size();
+    localizers_.push_back(make_localizer(name, setup));
+    localizers_.back()->reset(now_, setup.prior);
+  }
+  localizer_ticks_.resize(localizers_.size());
+}
+
+Outcome Loop::run() {
+  for (Listener* listener : listeners_) listener->on_start(setup_, seed_);
+  tell("plan", {{"length_m", setup_.path.length()}}, {{"policy", setup_.look.policy}});
+  std::optional<Outcome> end;
+  while (!(end = outcome())) tick();
+  tell(std::string(to_string(*end)), {{"x_m", simulator_.robot().truth().pose.x},
+                                      {"y_m", simulator_.robot().truth().pose.y}});
+  for (Listener* listener : listeners_) listener->on_finish(*end, now_);
+  return *end;
+}
+
+std::optional<Outcome> Loop::outcome() const {
+  if (simulator_.clearance() < 0.0) return Outcome::collided;
+  if (gave_up_) return gave_up_;
+  if (pilot_.arrived()) {
+    const Eigen::Vector2d goal = setup_.path.points().back();
+    const Eigen::Vector2d off = simulator_.robot().truth().pose.position() - goal;
+    return off.norm() <= setup_.goal_tolerance_m ? Outcome::arrived : Outcome::stuck;
+  }
+  if (now_.seconds() >= setup_.timeout_s) return Outcome::timeout;
+  return std::nullopt;
+}
+
+void Loop::tick() {
+  const Stopwatch step;
+  timing_ = {};
+  const Pose2 before = simulator_.robot().truth().pose;
+  simulator_.robot().advance(dt_);
+  now_ = now_ + dt_;
+  predict();
+
+  const auto exposure = simulator_.expose();
+  const TimedFrame frame(*exposure);
+  sighting_.reset();
+  observation_.reset();
+  for (auto& localizer_tick : localizer_ticks_) localizer_tick.update.reset();
+  if (setup_.full_frames) imaging::grey_image(frame);
+  if (recovering_) {
+    recover(frame);
+  } else {
+    watch(frame);
+    if (observation_) localize(*observation_);
+    plan();
+    steer();
+  }
+
+  for (std::size_t i = 0; i < localizers_.size(); ++i)
+    localizer_ticks_[i].belief = &localizers_[i]->belief();
+  timing_.render = frame.render_ms();
+  timing_.track -= std::min(timing_.track, timing_.render);
+  timing_.step = step.elapsed_ms();
+
+  std::optional<double> centring;
+  if (observation_ && acquired_)
+    centring = std::hypot(observation_->ellipse.u - sensor_.intrinsics.u0,
+                          observation_->ellipse.v - sensor_.intrinsics.v0);
+  const Tick told{now_,
+                  simulator_.robot().truth(),
+                  before,
+                  odometry_,
+                  head_,
+                  command_,
+                  recovering_ ? GazeState::search : gaze_.state(),
+                  gaze_.current(),
+                  look_,
+                  sighting_ ? std::optional(sighting_->feature.status) : std::nullopt,
+                  observation_ ? &*observation_ : nullptr,
+                  centring,
+                  acquired_ ? (now_ - *acquired_).seconds() : 0.0,
+                  stopped_to_look_,
+                  localizer_ticks_,
+                  primary_,
+                  pilot_.station(),
+                  *exposure,
+                  sighting_ ? sighting_->predicted : std::nullopt,
+                  timing_};
+  for (Listener* listener : listeners_) listener->on_tick(told);
+}
+
+void Loop::predict() {
+  odometry_ = simulator_.robot().read_odometry();
+  head_ = simulator_.robot().read_head();
+  sensor_ = {now_, setup_.robot.zoom.at(head_.zoom_mm), head_.angles, head_.zoom_mm, look_};
+  travelled_m_ += std::abs(odometry_.trans);
+  const Stopwatch watch;
+  for (const auto& localizer : localizers_) localizer->predict(odometry_);
+  timing_.localize += watch.elapsed_ms();
+}
+
+void Loop::watch(const imaging::Frame& frame) {
+  const auto& order = gaze_.current();
+  if (request_ == servo::TrackRequest::none || !order) return;
+  const Landmark* landmark = setup_.world.landmarks.find(order->landmark);
+  const Stopwatch watch;
+  sighting_ = watcher_.watch(frame, request_, sensor_, belief(), *landmark);
+  timing_.track += watch.elapsed_ms();
+  if (sighting_->feature.status != tracking::FeatureStatus::found) return;
+  observation_ = EllipseObservation{sensor_, order->landmark, sighting_->feature.ellipse,
+                                    sighting_->feature.covariance};
+}
+
+void Loop::localize(const EllipseObservation& observation) {
+  const Stopwatch watch;
+  for (std::size_t i = 0; i < localizers_.size(); ++i)
+    localizer_ticks_[i].update = localizers_[i]->update(observation);
+  timing_.localize += watch.elapsed_ms();
+
+  const auto& result = *localizer_ticks_[primary_].update;
+  if (result.status == localization::UpdateStatus::fused) {
+    rejected_in_a_row_ = 0;
+    if (!look_fused_) scheduler_.fused(travelled_m_);
+    look_fused_ = true;
+    return;
+  }
+  if (result.status == localization::UpdateStatus::unsupported) return;
+  if (rejected_in_a_row_++ == 0)
+    tell("rejected",
+         {{"look", static_cast<double>(look_)},
+          {"landmark", static_cast<double>(observation.expected.value_or(-1))},
+          {"nis", result.nis}},
+         {{"reason", std::string(to_string(result.status))}});
+}
+
+void Loop::plan() {
+  const Stopwatch watch;
+  if (rejected_in_a_row_ >= setup_.look.rejections_to_drop)
+    drop_look("the filter rejects what is tracked");
+  if (belief().status == BeliefStatus::lost) {
+    begin_recovery();
+    return;
+  }
+  const auto demand = scheduler_.demand(now_, belief(), travelled_m_);
+  const bool stop = demand == planner::LookDemand::stopped;
+  if (stop != stopped_to_look_)
+    tell(stop ? "stop" : "restart", {{"sigma_m", belief().position_sigma()}});
+  stopped_to_look_ = stop;
+  if (demand != planner::LookDemand::none && gaze_.state() == GazeState::idle) {
+    if (const auto order = scheduler_.choose(now_, belief(), head_, pilot_.station())) {
+      look_ = order->look;
+      look_fused_ = false;
+      rejected_in_a_row_ = 0;
+      simulator_.robot().begin_look();
+      gaze_.order(*order);
+      tell("look", {{"look", static_cast<double>(look_)},
+                    {"landmark", static_cast<double>(order->landmark)},
+                    {"sigma_m", belief().position_sigma()},
+                    {"travelled_m", travelled_m_}});
+    }
+  }
+  timing_.plan += watch.elapsed_ms();
+}
+
+void Loop::drop_look(const std::string& reason) {
+  const auto order = gaze_.current();
+  rejected_in_a_row_ = 0;
+  if (!order) return;
+  scheduler_.failed(now_, order->landmark);
+  tell("dropped",
+       {{"look", static_cast<double>(look_)}, {"landmark", static_cast<double>(order->landmark)}},
+       {{"reason", reason}});
+  gaze_.cancel();
+  request_ = servo::TrackRequest::none;
+  acquired_.reset();
+  observation_.reset();
+}
+
+void Loop::steer() {
+  if (recovering_) {
+    command_ = {};
+    simulator_.robot().command(command_, look_around_.step(head_));
+    return;
+  }
+  command_ = stopped_to_look_ ? BaseRates{} : pilot_.step(belief().pose);
+  const BaseRates odometry{odometry_.trans / dt_.seconds(),
+                           (odometry_.rot1 + odometry_.rot2) / dt_.seconds()};
+  const BaseRates expected = base_motion_.expect(odometry, command_);
+  const Stopwatch watch;
+  const auto order = gaze_.current();
+  servo::GazeInput input{
+      now_, head_, expected, belief(), setup_.world.landmarks, sensor_.intrinsics, std::nullopt};
+  if (observation_)
+    input.sighting = servo::GazeSighting{{observation_->ellipse.u, observation_->ellipse.v},
+                                         observation_->ellipse.a};
+  const servo::GazeOutput output = gaze_.step(input);
+  timing_.servo += watch.elapsed_ms();
+  if (order) {
+    const Landmark* landmark = setup_.world.landmarks.find(order->landmark);
+    watcher_.settle(sensor_, belief(), *landmark);
+    if (output.event != servo::GazeEvent::none) tell_gaze(output.event, order->landmark);
+  }
+  request_ = output.request;
+  simulator_.robot().command(command_, output.command);
+}
+
+void Loop::tell_gaze(servo::GazeEvent event, LandmarkId landmark) {
+  if (event == servo::GazeEvent::acquired)
+    acquired_ = now_;
+  else
+    acquired_.reset();
+  if (event == servo::GazeEvent::expired) scheduler_.failed(now_, landmark);
+  // "lost" alone is said of the belief.
+  tell(event == servo::GazeEvent::lost ? "target_lost" : std::string(to_string(event)),
+       {{"look", static_cast<double>(look_)}, {"landmark", static_cast<double>(landmark)}});
+}
+
+void Loop::tell(const std::string& kind, const Numbers& numbers, const Texts& texts) const {
+  const Event event{now_, kind, numbers, texts};
+  for (Listener* listener : listeners_) listener->on_event(event);
+}
+
+}  // namespace vigia::mission

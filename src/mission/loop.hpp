@@ -1,0 +1,90 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "look_around.hpp"
+#include "look_scheduler.hpp"
+#include "timed_frame.hpp"
+#include "vigia/localization/disc_information.hpp"
+#include "vigia/localization/relocalizer.hpp"
+#include "vigia/mission/mission.hpp"
+#include "vigia/servo/base_motion.hpp"
+#include "watcher.hpp"
+
+namespace vigia::mission {
+
+/// One mission in progress: the tick of the design's loop, part by part.
+class Loop {
+ public:
+  Loop(const MissionSetup& setup, std::uint64_t seed, const std::vector<Listener*>& listeners);
+
+  Outcome run();
+
+ private:
+  const Belief& belief() const { return localizers_[primary_]->belief(); }
+
+  void tick();
+  void predict();
+  void watch(const imaging::Frame& frame);
+  void localize(const EllipseObservation& observation);
+  void plan();
+  void steer();
+  void recover(const imaging::Frame& frame);
+  void begin_recovery();
+  void relocalize();
+  void replan(const Pose2& from);
+  void drop_look(const std::string& reason);
+  void tell_gaze(servo::GazeEvent event, LandmarkId landmark);
+  std::optional<Outcome> outcome() const;
+
+  using Texts = std::vector<std::pair<std::string, std::string>>;
+  using Numbers = std::vector<std::pair<std::string, double>>;
+  void tell(const std::string& kind, const Numbers& numbers = {}, const Texts& texts = {}) const;
+
+  const MissionSetup& setup_;
+  std::uint64_t seed_;
+  const std::vector<Listener*>& listeners_;
+
+  sim::Simulator simulator_;
+  std::vector<std::unique_ptr<localization::Localizer>> localizers_;
+  std::size_t primary_ = 0;
+  localization::DiscInformation information_;
+  localization::Relocalizer relocalizer_;
+  LookScheduler scheduler_;
+  Watcher watcher_;
+  servo::GazeController gaze_;
+  servo::BaseMotion base_motion_;
+  pilot::PathFollower pilot_;
+  LookAround look_around_;
+  std::vector<Eigen::Vector2d> waypoints_;  ///< of the path that the pilot follows
+
+  Stamp now_;
+  Duration dt_;
+  OdometryIncrement odometry_;
+  HeadReading head_;
+  SensorSnapshot sensor_;
+  BaseRates command_;
+  double travelled_m_ = 0.0;
+  bool stopped_to_look_ = false;
+  std::optional<Outcome> gave_up_;
+
+  servo::TrackRequest request_ = servo::TrackRequest::none;
+  LookId look_ = 0;
+  std::optional<Stamp> acquired_;
+  int rejected_in_a_row_ = 0;
+  bool look_fused_ = false;
+
+  bool recovering_ = false;
+  localization::Sweep sweep_;
+
+  // What this tick tells its listeners.
+  std::vector<LocalizerTick> localizer_ticks_;
+  std::optional<Sighting> sighting_;
+  std::optional<EllipseObservation> observation_;
+  TickTiming timing_;
+};
+
+}  // namespace vigia::mission

@@ -1,0 +1,81 @@
+#include "loop.hpp"
+
+namespace vigia::mission {
+
+// The lost robot stands still and looks around; what it sees, all at once, tells where it is.
+
+void Loop::begin_recovery() {
+  tell("lost", {{"sigma_m", belief().position_sigma()}}, {{"localizer", setup_.primary}});
+  gaze_.cancel();
+  request_ = servo::TrackRequest::none;
+  acquired_.reset();
+  recovering_ = true;
+  sweep_ = {};
+  look_ = scheduler_.next_look();
+  simulator_.robot().begin_look();
+  look_around_.begin(head_);
+}
+
+void Loop::recover(const imaging::Frame& frame) {
+  command_ = {};
+  if (look_around_.ready(now_, head_)) {
+    const Stopwatch watch;
+    for (auto& seen : watcher_.survey(frame, sensor_)) sweep_.sightings.push_back(seen);
+    sweep_.views.push_back(sensor_);
+    timing_.track += watch.elapsed_ms();
+    if (!look_around_.next()) {
+      relocalize();
+      return;
+    }
+    look_ = scheduler_.next_look();
+    simulator_.robot().begin_look();
+  }
+  simulator_.robot().command(command_, look_around_.step(head_));
+}
+
+void Loop::relocalize() {
+  const auto found = relocalizer_.solve(sweep_);
+  tell("looked_around", {{"sightings", static_cast<double>(sweep_.sightings.size())},
+                         {"hypotheses", static_cast<double>(found.hypotheses.size())}});
+  sweep_ = {};
+  if (found.status == localization::RelocalizationStatus::found) {
+    const auto& best = found.hypotheses.front();
+    localizers_[primary_]->reset(now_, {best.pose, best.covariance});
+    recovering_ = false;
+    tell("recovered", {{"x_m", best.pose.x}, {"y_m", best.pose.y}, {"theta_rad", best.pose.theta},
+                       {"sigma_m", belief().position_sigma()}});
+    replan(best.pose);
+    return;
+  }
+  if (look_around_.sweeps() >= setup_.recovery.sweeps) {
+    gave_up_ = Outcome::stuck;
+    return;
+  }
+  look_ = scheduler_.next_look();
+  simulator_.robot().begin_look();
+  look_around_.begin(head_);
+}
+
+void Loop::replan(const Pose2& from) {
+  std::vector<Eigen::Vector2d> waypoints{from.position()};
+  // The waypoints that still lie ahead on the path that was being followed.
+  const Path& path = pilot_.path();
+  double station = 0.0;
+  for (std::size_t i = 1; i < waypoints_.size(); ++i) {
+    station = path.project(waypoints_[i], station, path.length());
+    if (station > pilot_.station() || i + 1 == waypoints_.size())
+      waypoints.push_back(waypoints_[i]);
+  }
+  const planner::Route route =
+      planner::plan_route(setup_.world.plan, waypoints, setup_.route, setup_.route_seed);
+  if (route.status != planner::RouteStatus::found) {
+    tell("stuck", {}, {{"reason", "no route from where the robot found itself"}});
+    gave_up_ = Outcome::stuck;
+    return;
+  }
+  waypoints_ = waypoints;
+  pilot_ = pilot::PathFollower(route.path, setup_.robot.robot.base, setup_.pilot);
+  tell("replan", {{"length_m", route.path.length()}});
+}
+
+}  // namespace vigia::mission

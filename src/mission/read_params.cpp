@@ -1,0 +1,121 @@
+#include "read_params.hpp"
+
+#include "vigia/planner/look_policy.hpp"
+
+namespace vigia::mission {
+
+void read_ekf(MapReader reader, const sim::RobotParams& robot, localization::EkfParams& params) {
+  // Matched to the robot unless the mission says otherwise.
+  params.odometry = robot.odometry;
+  params.sensor = robot.sensor;
+  MapReader odometry = reader.map("odometry");
+  params.odometry.trans_per_sqrt_m =
+      odometry.number("trans_per_sqrt_m", {0.0, 1.0}, params.odometry.trans_per_sqrt_m);
+  params.odometry.rot_per_sqrt_m = from_deg(
+      odometry.number("rot_per_sqrt_m_deg", {0.0, 60.0}, to_deg(params.odometry.rot_per_sqrt_m)));
+  params.odometry.rot_per_sqrt_rad = from_deg(odometry.number(
+      "rot_per_sqrt_rad_deg", {0.0, 60.0}, to_deg(params.odometry.rot_per_sqrt_rad)));
+  odometry.finish();
+  MapReader sensor = reader.map("sensor");
+  params.sensor.look_angle =
+      from_deg(sensor.number("look_angle_deg", {0.0, 10.0}, to_deg(params.sensor.look_angle)));
+  params.sensor.reading_angle = from_deg(
+      sensor.number("reading_angle_deg", {0.0, 10.0}, to_deg(params.sensor.reading_angle)));
+  params.sensor.look_focal = sensor.number("look_focal", {0.0, 0.5}, params.sensor.look_focal);
+  sensor.finish();
+  params.gate_probability =
+      reader.number("gate_probability", {0.5, 0.999999}, params.gate_probability);
+  params.ambiguity_ratio = reader.number("ambiguity_ratio", {1.0, 1e9}, params.ambiguity_ratio);
+  params.centre_floor_px = reader.number("centre_floor_px", {0.0, 10.0}, params.centre_floor_px);
+  params.size_floor = reader.number("size_floor", {0.0, 1.0}, params.size_floor);
+  params.iterations = static_cast<int>(reader.integer("iterations", {1, 20}, params.iterations));
+  params.history_s = reader.number("history_s", {0.0, 60.0}, params.history_s);
+  params.lost_sigma_m = reader.number("lost_sigma_m", {0.01, 100.0}, params.lost_sigma_m);
+  params.lost_rejections = static_cast<int>(
+      reader.integer("lost_rejections", {1, 100000}, params.lost_rejections));
+  params.lost_looks =
+      static_cast<int>(reader.integer("lost_looks", {1, 1000}, params.lost_looks));
+  params.nis_looks = static_cast<int>(reader.integer("nis_looks", {1, 1000}, params.nis_looks));
+  params.nis_probability =
+      reader.number("nis_probability", {1e-12, 0.5}, params.nis_probability);
+  reader.finish();
+}
+
+void read_look(MapReader& reader, LookParams& params) {
+  const auto policies = planner::look_policy_names();
+  std::size_t nearest = 0;
+  while (nearest + 1 < policies.size() && policies[nearest] != params.policy) ++nearest;
+  params.policy = policies[reader.choice("policy", policies, nearest)];
+  if (reader.has("fixed_landmark"))
+    params.fixed_landmark =
+        static_cast<LandmarkId>(reader.integer("fixed_landmark", {0, 1000000}));
+  MapReader trigger = reader.map("trigger");
+  params.trigger.kind = trigger.choice("kind", {"distance", "uncertainty"}, 0) == 0
+                            ? planner::LookTriggerParams::Kind::distance
+                            : planner::LookTriggerParams::Kind::uncertainty;
+  params.trigger.distance_m =
+      trigger.number("distance_m", {0.0, 1000.0}, params.trigger.distance_m);
+  params.trigger.limit_1_m = trigger.number("limit_1_m", {0.0, 100.0}, params.trigger.limit_1_m);
+  params.trigger.limit_2_m =
+      trigger.number("limit_2_m", {params.trigger.limit_1_m, 100.0}, params.trigger.limit_2_m);
+  trigger.finish();
+  MapReader visibility = reader.map("visibility");
+  params.visibility.max_view_angle_deg =
+      visibility.number("max_view_angle_deg", {1.0, 85.0}, params.visibility.max_view_angle_deg);
+  params.visibility.min_range_m =
+      visibility.number("min_range_m", {0.0, 100.0}, params.visibility.min_range_m);
+  params.visibility.max_range_m = visibility.number(
+      "max_range_m", {params.visibility.min_range_m, 1000.0}, params.visibility.max_range_m);
+  visibility.finish();
+  params.period_s = reader.number("period_s", {0.0, 10.0}, params.period_s);
+  params.dwell_s = reader.number("dwell_s", {0.0, 60.0}, params.dwell_s);
+  params.timeout_s = reader.number("timeout_s", {0.1, 600.0}, params.timeout_s);
+  params.radius_px = reader.number("radius_px", {4.0, 200.0}, params.radius_px);
+  params.exclude_s = reader.number("exclude_s", {0.0, 600.0}, params.exclude_s);
+  params.rejections_to_drop = static_cast<int>(
+      reader.integer("rejections_to_drop", {1, 1000}, params.rejections_to_drop));
+  reader.finish();
+}
+
+void read_gaze(MapReader reader, servo::GazeParams& params) {
+  MapReader servo = reader.map("servo");
+  params.servo.gain = servo.number("gain", {0.0, 50.0}, params.servo.gain);
+  params.servo.feed_forward = servo.boolean("feed_forward", params.servo.feed_forward);
+  servo.finish();
+  MapReader zoom = reader.map("zoom");
+  params.zoom.gain = zoom.number("gain", {0.0, 50.0}, params.zoom.gain);
+  params.zoom.dead_band = zoom.number("dead_band", {0.0, 2.0}, params.zoom.dead_band);
+  zoom.finish();
+  params.settle_deg = reader.number("settle_deg", {0.01, 30.0}, params.settle_deg);
+  params.settle_focal = reader.number("settle_focal", {0.001, 1.0}, params.settle_focal);
+  params.lost_grace_s = reader.number("lost_grace_s", {0.0, 10.0}, params.lost_grace_s);
+  params.acquire_s = reader.number("acquire_s", {0.0, 60.0}, params.acquire_s);
+  params.search_s = reader.number("search_s", {0.0, 60.0}, params.search_s);
+  params.search_step_deg = reader.number("search_step_deg", {0.1, 60.0}, params.search_step_deg);
+  params.search_radius_px =
+      reader.number("search_radius_px", {2.0, 200.0}, params.search_radius_px);
+  params.motion_horizon_s =
+      reader.number("motion_horizon_s", {0.0, 60.0}, params.motion_horizon_s);
+  params.look_angle_deg = reader.number("look_angle_deg", {0.0, 10.0}, params.look_angle_deg);
+  params.aim_gain = reader.number("aim_gain", {0.1, 50.0}, params.aim_gain);
+  reader.finish();
+}
+
+void read_pilot(MapReader reader, pilot::PathFollowerParams& params) {
+  params.lookahead_m = reader.number("lookahead_m", {0.02, 5.0}, params.lookahead_m);
+  params.turn_in_place_deg =
+      reader.number("turn_in_place_deg", {1.0, 180.0}, params.turn_in_place_deg);
+  params.goal_tolerance_m = reader.number("goal_tolerance_m", {0.005, 5.0}, params.goal_tolerance_m);
+  params.slow_down_m = reader.number("slow_down_m", {0.0, 10.0}, params.slow_down_m);
+  reader.finish();
+}
+
+void read_recovery(MapReader reader, RecoveryParams& params) {
+  params.step_fraction = reader.number("step_fraction", {0.1, 1.0}, params.step_fraction);
+  params.tilt = from_deg(reader.number("tilt_deg", {-89.0, 89.0}, to_deg(params.tilt)));
+  params.settle_s = reader.number("settle_s", {0.0, 5.0}, params.settle_s);
+  params.sweeps = static_cast<int>(reader.integer("sweeps", {1, 100}, params.sweeps));
+  reader.finish();
+}
+
+}  // namespace vigia::mission

@@ -1,0 +1,163 @@
+#include "tables.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace vigia::mission {
+namespace {
+
+using Buffer = fmt::memory_buffer;
+
+template <typename... Args>
+void put(Buffer& buffer, fmt::format_string<Args...> format, Args&&... args) {
+  fmt::format_to(std::back_inserter(buffer), format, std::forward<Args>(args)...);
+}
+
+std::string_view view(const Buffer& buffer) { return {buffer.data(), buffer.size()}; }
+
+/// One line of a TUM trajectory: stamp x y z qx qy qz qw.
+void write_tum(OutputFile& file, Stamp stamp, const Pose2& pose) {
+  Buffer line;
+  put(line, "{:.6f} {:.6f} {:.6f} 0 0 0 {:.9f} {:.9f}\n", stamp.seconds(), pose.x, pose.y,
+      std::sin(0.5 * pose.theta), std::cos(0.5 * pose.theta));
+  file.write(view(line));
+}
+
+std::string header(const std::vector<std::string>& localizers) {
+  std::string text =
+      "stamp_s,x_true_m,y_true_m,theta_true_rad,v_mps,w_radps,pan_true_rad,tilt_true_rad,"
+      "zoom_mm,pan_rad,tilt_rad,rot1_rad,trans_m,rot2_rad,v_command_mps,w_command_radps,station_m,"
+      "gaze,landmark,look,stopped,feature,u_px,v_px,a_px,b_px,psi_rad,centring_px";
+  for (const auto& name : localizers)
+    for (const char* column : {"x_m", "y_m", "theta_rad", "var_x", "var_y", "var_theta", "cov_xy",
+                               "cov_xtheta", "cov_ytheta", "status", "update", "nis"})
+      text += "," + name + "_" + column;
+  return text + "\n";
+}
+
+void put_state(Buffer& line, const Tick& tick) {
+  const auto& truth = tick.truth;
+  put(line, "{:.3f},{:.6f},{:.6f},{:.7f},{:.5f},{:.5f},{:.7f},{:.7f},{:.4f},{:.7f},{:.7f}",
+      tick.now.seconds(), truth.pose.x, truth.pose.y, truth.pose.theta, truth.base.v, truth.base.w,
+      truth.head.pan, truth.head.tilt, truth.zoom_mm, tick.head.angles.pan, tick.head.angles.tilt);
+  put(line, ",{:.8f},{:.8f},{:.8f},{:.5f},{:.5f},{:.4f}", tick.odometry.rot1, tick.odometry.trans,
+      tick.odometry.rot2, tick.base_command.v, tick.base_command.w, tick.station_m);
+}
+
+void put_gaze(Buffer& line, const Tick& tick) {
+  put(line, ",{},", to_string(tick.gaze));
+  if (tick.order) put(line, "{}", tick.order->landmark);
+  put(line, ",{},{},", tick.look, tick.stopped_to_look ? 1 : 0);
+  if (tick.feature) put(line, "{}", tracking::to_string(*tick.feature));
+  if (const auto* seen = tick.observation) {
+    const Ellipse& e = seen->ellipse;
+    put(line, ",{:.4f},{:.4f},{:.4f},{:.4f},{:.5f},", e.u, e.v, e.a, e.b, e.psi);
+  } else {
+    put(line, ",,,,,,");
+  }
+  if (tick.centring_px) put(line, "{:.4f}", *tick.centring_px);
+}
+
+void put_belief(Buffer& line, const LocalizerTick& localizer) {
+  const Belief& b = *localizer.belief;
+  const auto& p = b.covariance;
+  put(line, ",{:.6f},{:.6f},{:.7f},{:.4e},{:.4e},{:.4e},{:.4e},{:.4e},{:.4e},{},", b.pose.x,
+      b.pose.y, b.pose.theta, p(0, 0), p(1, 1), p(2, 2), p(0, 1), p(0, 2), p(1, 2),
+      to_string(b.status));
+  if (localizer.update)
+    put(line, "{},{:.4f}", localization::to_string(localizer.update->status),
+        localizer.update->nis);
+  else
+    put(line, ",");
+}
+
+/// The median and the 99th percentile of one part of the ticks.
+nlohmann::json percentiles(const std::vector<TickTiming>& timings, double TickTiming::*part) {
+  std::vector<double> values;
+  values.reserve(timings.size());
+  for (const auto& timing : timings) values.push_back(timing.*part);
+  std::sort(values.begin(), values.end());
+  const auto at = [&](double q) {
+    if (values.empty()) return 0.0;
+    return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))];
+  };
+  return {{"p50", at(0.5)}, {"p99", at(0.99)}};
+}
+
+}  // namespace
+
+Tables::Tables(const std::filesystem::path& folder, const std::vector<std::string>& localizers)
+    : ticks_(folder / "ticks.csv"),
+      events_(folder / "events.jsonl"),
+      timing_(folder / "timing.csv"),
+      truth_(folder / "truth.tum") {
+  for (const auto& name : localizers) localizers_.emplace_back(folder / (name + ".tum"));
+  ticks_.write(header(localizers));
+  timing_.write("stamp_s,step_ms,render_ms,track_ms,localize_ms,plan_ms,servo_ms\n");
+}
+
+void Tables::seed(std::uint64_t seed) {
+  events_.write(nlohmann::json{{"t_s", 0.0}, {"event", "start"}, {"seed", seed}}.dump() + "\n");
+}
+
+void Tables::tick(const Tick& tick) {
+  Buffer line;
+  put_state(line, tick);
+  put_gaze(line, tick);
+  for (const auto& localizer : tick.localizers) put_belief(line, localizer);
+  line.push_back('\n');
+  ticks_.write(view(line));
+
+  write_tum(truth_, tick.now, tick.truth.pose);
+  for (std::size_t i = 0; i < localizers_.size(); ++i)
+    write_tum(localizers_[i], tick.now, tick.localizers[i].belief->pose);
+
+  const TickTiming& t = tick.timing;
+  timings_.push_back(t);
+  Buffer timing;
+  put(timing, "{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f}\n", tick.now.seconds(), t.step,
+      t.render, t.track, t.localize, t.plan, t.servo);
+  timing_.write(view(timing));
+}
+
+void Tables::event(const Event& event) {
+  nlohmann::ordered_json line;
+  line["t_s"] = event.stamp.seconds();
+  line["event"] = event.kind;
+  for (const auto& [key, value] : event.numbers) {
+    // Counts and ids are whole numbers and read as such.
+    if (value == std::floor(value) && std::abs(value) < 1e15)
+      line[key] = static_cast<std::int64_t>(value);
+    else
+      line[key] = value;
+  }
+  for (const auto& [key, value] : event.texts) line[key] = value;
+  events_.write(line.dump() + "\n");
+}
+
+void Tables::close() {
+  ticks_.close();
+  events_.close();
+  timing_.close();
+  truth_.close();
+  for (auto& file : localizers_) file.close();
+}
+
+std::string Tables::timing_json(double wall_s, double sim_s) const {
+  nlohmann::ordered_json timing;
+  timing["wall_s"] = wall_s;
+  timing["real_time_factor"] = wall_s > 0.0 ? sim_s / wall_s : 0.0;
+  timing["step_ms"] = percentiles(timings_, &TickTiming::step);
+  timing["render_ms"] = percentiles(timings_, &TickTiming::render);
+  timing["track_ms"] = percentiles(timings_, &TickTiming::track);
+  timing["localize_ms"] = percentiles(timings_, &TickTiming::localize);
+  timing["plan_ms"] = percentiles(timings_, &TickTiming::plan);
+  timing["servo_ms"] = percentiles(timings_, &TickTiming::servo);
+  return timing.dump(2) + "\n";
+}
+
+}  // namespace vigia::mission

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "vigia/core/output_file.hpp"
+#include "vigia/mission/listener.hpp"
+
+namespace vigia::mission {
+
+/// The run folder's text files that grow tick by tick: ticks.csv, *.tum, events.jsonl, timing.csv.
+class Tables {
+ public:
+  Tables(const std::filesystem::path& folder, const std::vector<std::string>& localizers);
+
+  void seed(std::uint64_t seed);
+  void tick(const Tick& tick);
+  void event(const Event& event);
+  void close();
+
+  /// timing.json: percentiles of each part of a tick.
+  std::string timing_json(double wall_s, double sim_s) const;
+
+ private:
+  OutputFile ticks_;
+  OutputFile events_;
+  OutputFile timing_;
+  OutputFile truth_;
+  std::vector<OutputFile> localizers_;
+  std::vector<TickTiming> timings_;
+};
+
+}  // namespace vigia::mission

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "vigia/core/belief.hpp"
+#include "vigia/core/head.hpp"
+#include "vigia/core/landmark.hpp"
+#include "vigia/core/sensor_noise.hpp"
+#include "vigia/imaging/canvas.hpp"
+#include "vigia/servo/gaze_controller.hpp"
+#include "vigia/tracking/ellipse_tracker.hpp"
+
+namespace vigia::mission {
+
+/// What the tracker found in a frame, and what was expected of it.
+struct Sighting {
+  tracking::EllipseFeature feature;
+  std::optional<Ellipse> predicted;
+};
+
+/// Turns the gaze's request into a call of the tracker: predicts the landmark's image from the
+/// belief and carries the expected motion from frame to frame.
+class Watcher {
+ public:
+  Watcher(const std::string& tracker, HeadGeometry head, SensorNoise noise);
+
+  /// Acquires or tracks @p landmark in @p frame. @p request is not none.
+  Sighting watch(const imaging::Frame& frame, servo::TrackRequest request,
+                 const SensorSnapshot& sensor, const Belief& belief, const Landmark& landmark);
+
+  /// Remembers where the belief, after this tick's update, puts the landmark: the next frame's
+  /// expected motion counts from there.
+  void settle(const SensorSnapshot& sensor, const Belief& belief, const Landmark& landmark);
+
+  /// Every disc of a whole frame, as observations of unknown identity.
+  std::vector<EllipseObservation> survey(const imaging::Frame& frame, const SensorSnapshot& sensor);
+
+ private:
+  std::optional<tracking::EllipsePrediction> predict(const SensorSnapshot& sensor,
+                                                     const Belief& belief,
+                                                     const Landmark& landmark) const;
+
+  std::unique_ptr<tracking::EllipseTracker> tracker_;
+  HeadGeometry head_;
+  SensorNoise noise_;
+  imaging::Canvas canvas_;
+  std::optional<Eigen::Vector2d> settled_;
+};
+
+}  // namespace vigia::mission

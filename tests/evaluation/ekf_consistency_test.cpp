@@ -1,0 +1,142 @@
+#include "localization/drive.hpp"
+
+#include <gtest/gtest.h>
+
+#include "vigia/evaluation/metrics.hpp"
+#include "vigia/evaluation/pcrlb.hpp"
+#include "vigia/localization/ekf.hpp"
+
+namespace vigia::evaluation {
+namespace {
+
+using localization::EkfLocalizer;
+using localization::EkfParams;
+using localization::measured_disc_covariance;
+using localization::test::Drive;
+using localization::test::DriveNoise;
+using localization::test::DriveStep;
+
+constexpr int kRuns = 100;
+
+EkfParams matched(const DriveNoise& noise) {
+  EkfParams params;
+  params.odometry = noise.odometry;
+  params.sensor = noise.sensor;
+  params.centre_floor_px = 0.0;
+  params.size_floor = 0.0;
+  return params;
+}
+
+/// What a run of the filter gives at the end of every look and before every look.
+struct Run {
+  std::vector<double> nees;
+  double squared_error = 0.0;
+  double bound = 0.0;
+  DriveErrors errors;
+  int fused = 0;
+  int other = 0;
+};
+
+Run run_filter(const Drive& drive, const EkfParams& params) {
+  const LandmarkMap map = localization::test::room_landmarks();
+  EkfLocalizer ekf(map, drive.geometry, params, localization::test::room_plan());
+  ekf.reset({}, drive.prior);
+  PosteriorBound bound(drive.prior.covariance, drive.geometry, drive.noise.sensor);
+  Run run;
+  std::vector<PoseSample> samples;
+  Pose2 before = drive.start;
+  for (std::size_t i = 0; i < drive.steps.size(); ++i) {
+    const DriveStep& step = drive.steps[i];
+    ekf.predict(step.measured);
+    bound.predict(before, step.truth, control_covariance(step.truth, drive.noise.odometry));
+    if (step.seen) {
+      const auto result = ekf.update(*step.seen);
+      const bool fused = result.status == localization::UpdateStatus::fused;
+      fused ? ++run.fused : ++run.other;
+      bound.update(step.pose, *map.find(*step.seen->expected), step.seen->sensor, step.bias,
+                   measured_disc_covariance(*step.seen));
+    }
+    before = step.pose;
+    const PoseSample sample{step.pose, ekf.belief().pose, ekf.belief().covariance};
+    samples.push_back(sample);
+    run.squared_error += difference(sample.estimate, sample.truth).head<2>().squaredNorm();
+    run.bound += bound.covariance().topLeftCorner<2, 2>().trace();
+    const bool last_of_look =
+        step.seen && (i + 1 == drive.steps.size() || !drive.steps[i + 1].seen);
+    if (last_of_look) run.nees.push_back(nees(sample));
+  }
+  run.errors = drive_errors(samples);
+  return run;
+}
+
+struct Campaign {
+  Anees consistency;
+  Estimate ratio;
+  double rmse = 0.0;
+  double final_position = 0.0;
+  double final_heading = 0.0;
+  int fused = 0;
+  int other = 0;
+};
+
+template <typename Params>
+Campaign run_campaign(const DriveNoise& noise, const Params& params) {
+  Campaign campaign;
+  std::vector<std::vector<double>> all;
+  std::vector<double> errors;
+  std::vector<double> bounds;
+  for (int seed = 0; seed < kRuns; ++seed) {
+    const Run run = run_filter(simulate_drive(noise, static_cast<std::uint64_t>(seed)), params);
+    all.push_back(run.nees);
+    errors.push_back(run.squared_error);
+    bounds.push_back(run.bound);
+    campaign.rmse += run.errors.position_rmse / kRuns;
+    campaign.final_position += run.errors.position_final / kRuns;
+    campaign.final_heading += run.errors.heading_final / kRuns;
+    campaign.fused += run.fused;
+    campaign.other += run.other;
+  }
+  campaign.consistency = anees(all, 3);
+  campaign.ratio = pcrlb_ratio(errors, bounds, 1);
+  return campaign;
+}
+
+void report(const Campaign& campaign) {
+  std::printf(
+      "ANEES %.3f inside %.2f ratio %.3f [%.3f, %.3f] rmse %.1f cm final %.1f cm %.2f deg "
+      "fused %d other %d\n",
+      campaign.consistency.mean_per_dof, campaign.consistency.inside_band, campaign.ratio.value,
+      campaign.ratio.interval.low, campaign.ratio.interval.high, 100.0 * campaign.rmse,
+      100.0 * campaign.final_position, to_deg(campaign.final_heading), campaign.fused,
+      campaign.other);
+}
+
+TEST(EkfConsistency, ProbeMatched) {
+  DriveNoise noise;
+  report(run_campaign(noise, matched(noise)));
+  noise.sensor.reading_angle = from_deg(0.1);
+  report(run_campaign(noise, matched(noise)));
+  noise.sensor.look_angle = 1e-6;
+  noise.sensor.reading_angle = from_deg(0.3);
+  report(run_campaign(noise, matched(noise)));
+}
+
+TEST(EkfConsistency, ProbeFloors) {
+  DriveNoise noise;
+  EkfParams params = matched(noise);
+  params.centre_floor_px = 0.02;
+  params.size_floor = 5e-4;
+  report(run_campaign(noise, params));
+}
+
+TEST(EkfConsistency, ProbeIterations) {
+  DriveNoise noise;
+  EkfParams params = matched(noise);
+  for (int i = 1; i < 5; ++i) {
+    params.iterations = i;
+    report(run_campaign(noise, params));
+  }
+}
+
+}  // namespace
+}  // namespace vigia::evaluation

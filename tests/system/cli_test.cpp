@@ -1,0 +1,177 @@
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "support/process.hpp"
+#include "support/temp_dir.hpp"
+
+namespace vigia {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+const std::string kMission = std::string(VIGIA_SOURCE_DIR) + "/config/missions/armingol-room.yaml";
+
+class Program : public ::testing::Test {
+ protected:
+  vigia::testing::ProcessResult vigia(const std::string& arguments) const {
+    return vigia::testing::run_process(std::string(VIGIA_PROGRAM) + " " + arguments, dir_.path());
+  }
+  fs::path file(const std::string& name, const std::string& text) const {
+    std::ofstream(dir_.path() / name) << text;
+    return dir_.path() / name;
+  }
+  vigia::testing::TempDir dir_;
+};
+
+/// A mission that ends after two seconds, quickly.
+std::string short_run(const fs::path& out) {
+  return "run " + kMission + " --quiet --set timeout_s=2 --out " + out.string();
+}
+
+TEST_F(Program, WithoutACommandIsWrongUsage) { EXPECT_EQ(vigia("").status, 2); }
+
+TEST_F(Program, TellsItsVersion) {
+  const auto result = vigia("--version");
+  EXPECT_EQ(result.status, 0);
+  EXPECT_THAT(result.out, HasSubstr("0.1.0"));
+}
+
+TEST_F(Program, ChecksTheMissionThatItComesWith) {
+  const auto result = vigia("check " + kMission);
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("armingol-room"));
+}
+
+TEST_F(Program, ReportsAMissionThatDidNotArriveWithStatusOneAndAWholeRunFolder) {
+  const auto result = vigia(short_run(dir_.path() / "run"));
+  EXPECT_EQ(result.status, 1) << result.err;
+  for (const char* name : {"summary.json", "mission.yaml", "truth.tum", "ekf.tum", "odometry.tum",
+                           "ticks.csv", "events.jsonl", "map.png", "timing.json", "timing.csv"})
+    EXPECT_TRUE(fs::exists(dir_.path() / "run" / name)) << name;
+  const auto summary =
+      nlohmann::json::parse(vigia::testing::read_text(dir_.path() / "run/summary.json"));
+  EXPECT_EQ(summary["outcome"], "timeout");
+}
+
+TEST_F(Program, PrintsTheSummaryAndNothingElseOnStdoutWithJson) {
+  const auto result = vigia(short_run(dir_.path() / "run") + " --json");
+  EXPECT_EQ(nlohmann::json::parse(result.out)["mission"], "armingol-room");
+}
+
+TEST_F(Program, RepeatsARunFromItsResolvedMission) {
+  ASSERT_EQ(vigia(short_run(dir_.path() / "first")).status, 1);
+  const auto resolved = dir_.path() / "first/mission.yaml";
+  const auto result =
+      vigia("run " + resolved.string() + " --quiet --out " + (dir_.path() / "again").string());
+  ASSERT_EQ(result.status, 1) << result.err;
+  EXPECT_EQ(vigia::testing::read_text(dir_.path() / "first/ticks.csv"),
+            vigia::testing::read_text(dir_.path() / "again/ticks.csv"));
+}
+
+TEST_F(Program, GivesTheSameBytesInTwoProcesses) {
+  ASSERT_EQ(vigia(short_run(dir_.path() / "a") + " --seed 7").status, 1);
+  ASSERT_EQ(vigia(short_run(dir_.path() / "b") + " --seed 7").status, 1);
+  for (const char* name : {"summary.json", "ticks.csv", "events.jsonl", "map.png", "truth.tum"})
+    EXPECT_EQ(vigia::testing::read_text(dir_.path() / "a" / name),
+              vigia::testing::read_text(dir_.path() / "b" / name))
+        << name;
+}
+
+TEST_F(Program, ReplacesAnEarlierRunFolder) {
+  ASSERT_EQ(vigia(short_run(dir_.path() / "run") + " --seed 1").status, 1);
+  ASSERT_EQ(vigia(short_run(dir_.path() / "run") + " --seed 2").status, 1);
+  EXPECT_THAT(vigia::testing::read_text(dir_.path() / "run/summary.json"),
+              HasSubstr("\"seed\": 2"));
+}
+
+TEST_F(Program, KeepsAFolderThatIsNoRunFolder) {
+  fs::create_directory(dir_.path() / "mine");
+  file("mine/thesis.tex", "years of work");
+  const auto result = vigia(short_run(dir_.path() / "mine"));
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, HasSubstr("is not one of ours"));
+  EXPECT_EQ(vigia::testing::read_text(dir_.path() / "mine/thesis.tex"), "years of work");
+}
+
+TEST_F(Program, RejectsAnOutputPathBelowARegularFile) {
+  const auto plain = file("plain", "text");
+  const auto result = vigia(short_run(plain / "run"));
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, HasSubstr("plain/run"));
+  EXPECT_EQ(vigia::testing::read_text(plain), "text");
+}
+
+TEST_F(Program, LeavesNothingBehindOnAFullDisk) {
+  const auto disk = dir_.path() / "disk";
+  fs::create_directory(disk);
+  // A mount of its own namespace: gone with the process.
+  const std::string inside = "mount -t tmpfs -o size=96k none " + disk.string() + " || exit 77; " +
+                             std::string(VIGIA_PROGRAM) + " " + short_run(disk / "run") +
+                             "; status=$?; ls -A " + disk.string() + "; exit $status";
+  const auto result =
+      vigia::testing::run_process("unshare --mount sh -c '" + inside + "'", dir_.path());
+  if (result.status == 77 || result.err.find("unshare") != std::string::npos)
+    GTEST_SKIP() << "no right to mount a tmpfs here";
+  EXPECT_EQ(result.status, 2) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("No space left on device"));
+  EXPECT_EQ(result.out, "");
+}
+
+TEST_F(Program, NamesTheKeyOfAWrongOverride) {
+  const auto result = vigia("run " + kMission + " --set planner.polcy=nearest");
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, HasSubstr("polcy"));
+  EXPECT_THAT(result.err, HasSubstr("policy"));
+}
+
+TEST_F(Program, ReportsAMissingMissionFile) {
+  const auto result = vigia("run " + (dir_.path() / "none.yaml").string());
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, HasSubstr("none.yaml"));
+}
+
+struct WrongMission {
+  const char* name;
+  const char* override_;  ///< a `--set` that spoils the mission
+  const char* message;    ///< part of what is said
+};
+
+class WrongMissions : public Program, public ::testing::WithParamInterface<WrongMission> {};
+
+TEST_P(WrongMissions, IsRejectedWithASentence) {
+  const auto result = vigia("check " + kMission + " --set '" + GetParam().override_ + "'");
+  EXPECT_EQ(result.status, 2) << result.out;
+  EXPECT_THAT(result.err, HasSubstr(GetParam().message));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Overrides, WrongMissions,
+    ::testing::Values(
+        WrongMission{"UnknownPolicy", "planner.policy=oracel", "nearest"},
+        WrongMission{"FixedWithoutLandmark", "planner.policy=fixed", "fixed_landmark"},
+        WrongMission{"StartInTheWall", "start.position_m=[0.05, 1.0]", "does not fit"},
+        WrongMission{"StartOutside", "start.position_m=[-3, 1]", "does not fit"},
+        WrongMission{"GoalInTheWall", "route.goal_m=[11.99, 6.99]", "does not fit"},
+        WrongMission{"GoalOutside", "route.goal_m=[40, 1]", "does not fit"},
+        WrongMission{"NoPassage", "route.clearance_m=4.9", ""},
+        WrongMission{"NegativeRate", "rate_hz=-25", "-25"},
+        WrongMission{"TextForNumber", "timeout_s=soon", "soon"},
+        WrongMission{"NotANumber", "timeout_s=.nan", "timeout_s"},
+        WrongMission{"UnknownTracker", "tracker=blob", "correlation"},
+        WrongMission{"UnknownLocalizer", "localization.primary=gps", "ekf"},
+        WrongMission{"LimitsReversed", "planner.trigger={limit_1_m: 0.2, limit_2_m: 0.1}", "0.1"},
+        WrongMission{"ListForMap", "planner=[1, 2]", "planner"},
+        WrongMission{"MissingWorld", "world=nowhere.yaml", "nowhere.yaml"},
+        WrongMission{"ZoomTableOfOne", "robot.zoom.table=[{zoom_mm: 8, focal_px: 600}]", "zoom"}),
+    [](const auto& info) { return info.param.name; });
+
+}  // namespace
+}  // namespace vigia
