@@ -35,7 +35,7 @@ std::optional<Eigen::Matrix3d> DiscInformation::look_information(const Landmark&
   const auto image = predict_disc(landmark, sensor, geometry_, pose, {});
   if (!image || !fits(sensor.intrinsics, *image)) return std::nullopt;
 
-  const double size_sigma = params_.pixel_sigma / std::exp(image->z(2));
+  const double size_sigma = params_.pixel_sigma / (std::sqrt(2.0) * std::exp(image->z(2)));
   const Eigen::Vector3d sigma(params_.pixel_sigma, params_.pixel_sigma, size_sigma);
   Eigen::Matrix3d S = sigma.cwiseAbs2().asDiagonal();
   S += image->dz_dbias * look_covariance(params_.sensor) * image->dz_dbias.transpose();

@@ -15,6 +15,9 @@ namespace vigia::localization {
 namespace {
 
 constexpr int kMaxSteps = 20;
+/// A fit less likely than this is none. Far out: the right pose must not drop out by bad luck and
+/// leave the field to a wrong one, and two discs in one look share an error that counts twice here.
+constexpr double kImpossible = 1e-6;
 /// A start covariance wide enough to take in every landmark that a closed-form pose may mean.
 const Eigen::Vector3d kSeedSigma(0.3, 0.3, from_deg(4.0));
 
@@ -118,9 +121,10 @@ Relocalization Relocalizer::solve(const Sweep& sweep, const std::optional<Prior>
     const double weight = std::exp(h.log_weight - found.front().log_weight) / sum;
     result.hypotheses.push_back({h.fit.pose, h.fit.covariance, weight});
   }
-  result.status = result.hypotheses.front().weight >= params_.found_weight
-                      ? RelocalizationStatus::found
-                      : RelocalizationStatus::ambiguous;
+  const auto explained = static_cast<double>(found.front().matches.size());
+  const bool sure = result.hypotheses.front().weight >= params_.found_weight &&
+                    explained >= params_.explained_share * static_cast<double>(sightings.size());
+  result.status = sure ? RelocalizationStatus::found : RelocalizationStatus::ambiguous;
   return result;
 }
 
@@ -273,7 +277,7 @@ std::optional<Relocalizer::Hypothesis> Relocalizer::hypothesis(
     h.fit = *fit;
   }
   const double dof = 3.0 * static_cast<double>(h.matches.size()) - (prior ? 0.0 : 3.0);
-  if (h.fit.chi2 > chi_square_quantile(params_.gate_probability, dof)) return std::nullopt;
+  if (h.fit.chi2 > chi_square_quantile(1.0 - kImpossible, dof)) return std::nullopt;
   if (plan_.clearance(h.fit.pose.position()) < params_.min_clearance_m) return std::nullopt;
   const auto unexplained = static_cast<double>(sightings.size() - h.matches.size());
   h.log_weight = -0.5 * h.fit.chi2 - params_.clutter_cost * unexplained +

@@ -31,7 +31,7 @@ EllipseObservation exact(const Landmark& landmark, const Pose2& truth, LookId lo
   const SensorSnapshot sensor =
       test::aimed_sensor(landmark, {}, truth, {}, look, Stamp::from_seconds(seconds));
   EllipseObservation seen = test::observe(landmark, sensor, {}, truth, {}, 0.0, 0.0, random);
-  seen.covariance = 0.01 * Eigen::Matrix<double, 5, 5>::Identity();
+  seen.covariance = 1e-4 * Eigen::Matrix<double, 5, 5>::Identity();
   return seen;
 }
 

@@ -125,7 +125,6 @@ TEST(Relocalizer, FindsTheRobotAtRandomPosesAndIsNotSureOfAWrongOne) {
 TEST(Relocalizer, IsNotMisledByDiscsThatAreNoLandmarks) {
   constexpr int kPoses = 150;
   const Tally counts = tally(kPoses, true, 2);
-  std::printf("clutter right %d wrong %d\n", counts.right, counts.wrong);
   EXPECT_GE(counts.right, 0.9 * kPoses);
   EXPECT_LE(counts.wrong, 0.01 * kPoses);
 }

@@ -15,7 +15,7 @@ namespace vigia::localization {
 
 struct RelocalizerParams {
   SensorNoise sensor;  ///< of the head's and the zoom's readings
-  /// Share of right measurements that the χ² gates let pass.
+  /// Share of right measurements that the χ² gate of a single sighting lets pass.
   double gate_probability = 0.999;
   /// σ of what the disc's model leaves out: centre in px, and relative size.
   double centre_floor_px = 0.1;
@@ -24,6 +24,8 @@ struct RelocalizerParams {
   double aspect_tolerance = 0.08;
   /// Found when the best hypothesis has at least this share of the weight.
   double found_weight = 0.99;
+  /// … and explains at least this share of the sightings.
+  double explained_share = 0.5;
   /// −ln of how likely a disc-like sighting is no landmark, beside a sighting explained perfectly.
   double clutter_cost = 10.0;
   /// Probability that a landmark that the sweep covered is detected, within these limits.

@@ -1,0 +1,54 @@
+#include "vigia/evaluation/pcrlb.hpp"
+
+#include "localization/drive.hpp"
+
+#include <gtest/gtest.h>
+
+#include "vigia/localization/ekf.hpp"
+
+namespace vigia::evaluation {
+namespace {
+
+using localization::test::Drive;
+using localization::test::DriveStep;
+
+TEST(PosteriorBound, EqualsTheCovarianceOfAFilterThatSitsOnTheTruth) {
+  // Perfect odometry and perfect images: the filter linearises where the bound does.
+  Drive drive = localization::test::simulate_drive({}, 1);
+  const LandmarkMap map = localization::test::room_landmarks();
+  localization::EkfParams params;
+  params.odometry = drive.noise.odometry;
+  params.centre_floor_px = 0.0;
+  params.size_floor = 0.0;
+  localization::EkfLocalizer ekf(map, drive.geometry, params);
+  ekf.reset({}, {drive.start, drive.prior.covariance});
+  PosteriorBound bound(drive.prior.covariance, drive.geometry, drive.noise.sensor);
+  RandomStream random(1, "unused");
+  Pose2 before = drive.start;
+  for (const DriveStep& step : drive.steps) {
+    ekf.predict(step.truth);
+    bound.predict(before, step.truth, control_covariance(step.truth, drive.noise.odometry));
+    before = step.pose;
+    if (!step.seen) continue;
+    const Landmark& landmark = *map.find(*step.seen->expected);
+    const SensorSnapshot sensor = localization::test::aimed_sensor(
+        landmark, drive.geometry, step.pose, {}, step.seen->sensor.look, step.seen->sensor.stamp);
+    EllipseObservation seen = localization::test::observe(landmark, sensor, drive.geometry,
+                                                          step.pose, {}, 0.0, 0.0, random);
+    seen.covariance = step.seen->covariance;
+    ASSERT_EQ(ekf.update(seen).status, localization::UpdateStatus::fused);
+    ASSERT_TRUE(bound.update(step.pose, landmark, sensor, {},
+                             localization::measured_disc_covariance(seen)));
+    ASSERT_TRUE(ekf.belief().covariance.isApprox(bound.covariance(), 1e-6));
+  }
+}
+
+TEST(PosteriorBound, ALandmarkWithoutAnImageChangesNothing) {
+  PosteriorBound bound(0.01 * Eigen::Matrix3d::Identity(), {}, {});
+  const Landmark behind = localization::test::disc(1, -3.0, 0.0, 1.0, 0.0);
+  EXPECT_FALSE(bound.update({}, behind, {}, {}, Eigen::Matrix3d::Identity()));
+  EXPECT_TRUE(bound.covariance().isApprox(0.01 * Eigen::Matrix3d::Identity()));
+}
+
+}  // namespace
+}  // namespace vigia::evaluation
