@@ -1,7 +1,6 @@
 #include "vigia/planner/look_policy.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace vigia::planner {
 namespace {
@@ -36,7 +35,7 @@ class FixedPolicy final : public LookPolicy {
 
 class RandomPolicy final : public LookPolicy {
  public:
-  explicit RandomPolicy(RandomStream stream) : stream_(std::move(stream)) {}
+  explicit RandomPolicy(RandomStream stream) : stream_(stream) {}
   std::string_view name() const override { return "random"; }
   std::optional<LandmarkId> choose(const LookContext& context) override {
     const auto landmarks = candidates(context);
@@ -68,7 +67,7 @@ class NearestPolicy final : public LookPolicy {
 std::unique_ptr<LookPolicy> make_look_policy(const std::string& name,
                                              std::optional<LandmarkId> fixed, RandomStream stream) {
   if (name == "fixed") return std::make_unique<FixedPolicy>(fixed);
-  if (name == "random") return std::make_unique<RandomPolicy>(std::move(stream));
+  if (name == "random") return std::make_unique<RandomPolicy>(stream);
   if (name == "nearest") return std::make_unique<NearestPolicy>();
   return nullptr;
 }

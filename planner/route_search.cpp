@@ -37,11 +37,12 @@ std::vector<Vector2d> places_round_corners(const RoomToMove& room) {
   constexpr int kDirections = 16;
   std::vector<Vector2d> result;
   for (const Wall& face : room.plan().faces()) {
-    for (int k = 0; k < 2 * kDirections; ++k) {
-      const double angle = 2.0 * kPi * (k / 2) / kDirections;
-      const Vector2d p = (k % 2 == 0 ? face.a : face.b) +
-                         1.02 * room.radius() * Vector2d(std::cos(angle), std::sin(angle));
-      if (room.fits(p)) result.push_back(p);
+    for (const Vector2d& end : {face.a, face.b}) {
+      for (int k = 0; k < kDirections; ++k) {
+        const double angle = 2.0 * kPi * k / kDirections;
+        const Vector2d p = end + 1.02 * room.radius() * Vector2d(std::cos(angle), std::sin(angle));
+        if (room.fits(p)) result.push_back(p);
+      }
     }
   }
   return result;

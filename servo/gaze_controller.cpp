@@ -270,7 +270,8 @@ GazeOutput GazeController::watch(const GazeInput& input, const Landmark& landmar
 
   const Eigen::Isometry3d rMc = camera_in_base(geometry_, input.head.angles);
   const Eigen::Isometry3d rMw = to_isometry(input.belief.pose).inverse();
-  const double range = (rMw * landmark.centre_w() - rMc.translation()).norm();
+  // However wrong the belief, what is seen is not within the camera.
+  const double range = std::max((rMw * landmark.centre_w() - rMc.translation()).norm(), 0.1);
   const Eigen::Vector2d xy = unproject(input.intrinsics, input.sighting->uv);
   const Eigen::Vector3d p_c = range * Eigen::Vector3d(xy.x(), xy.y(), 1.0).normalized();
   seen_at_r_ = rMc * p_c;

@@ -420,6 +420,19 @@ TEST_F(GazeControllerTest, AnOrderForALandmarkThatTheMapDoesNotHoldExpiresAtOnce
   EXPECT_EQ(gaze_.state(), GazeState::idle);
 }
 
+TEST_F(GazeControllerTest, ABeliefThatPutsTheRobotIntoTheLandmarkStillGivesFiniteRates) {
+  gaze_.order(order_for(1));
+  ASSERT_EQ(run_to_event(5.0), GazeEvent::acquired);
+  landmarks_ = LandmarkMap({disc_at(1, {4.0, 1.0, 1.0}, kPi)});
+  belief_error_ = {3.85, 1.0, 0.0};
+  for (int i = 0; i < 100; ++i) {
+    const GazeOutput output = tick();
+    EXPECT_TRUE(std::isfinite(output.command.angles.pan));
+    EXPECT_TRUE(std::isfinite(output.command.angles.tilt));
+    EXPECT_TRUE(std::isfinite(output.command.zoom_mm_s));
+  }
+}
+
 TEST_F(GazeControllerTest, AJumpOfTheBeliefSendsTheHeadBackToTheSlew) {
   hidden_ = true;
   gaze_.order(order_for(1));
