@@ -20,7 +20,7 @@ std::size_t segment_at(const std::vector<double>& stations, double s) {
 
 }  // namespace
 
-Path::Path(std::vector<Eigen::Vector2d> points) {
+Path::Path(const std::vector<Eigen::Vector2d>& points) {
   for (const Eigen::Vector2d& p : points) {
     if (!p.allFinite()) throw std::invalid_argument("a point of the path is not finite");
     const double step = points_.empty() ? 0.0 : (p - points_.back()).norm();
@@ -71,7 +71,7 @@ Path Path::resampled(double spacing) const {
   std::vector<Eigen::Vector2d> points;
   points.reserve(wanted.size());
   for (const double s : wanted) points.push_back(at(s));
-  return Path(std::move(points));
+  return Path(points);
 }
 
 }  // namespace vigia

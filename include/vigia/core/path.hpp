@@ -11,7 +11,7 @@ class Path {
  public:
   Path() = default;
   /// At least two distinct points; repeated neighbours are dropped. Throws std::invalid_argument.
-  explicit Path(std::vector<Eigen::Vector2d> points);
+  explicit Path(const std::vector<Eigen::Vector2d>& points);
 
   const std::vector<Eigen::Vector2d>& points() const { return points_; }
   /// Arc length at each of points().
