@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include <Eigen/LU>
+
 #include "vigia/core/angle.hpp"
 
 namespace vigia::tracking {
@@ -247,7 +249,24 @@ void BlobFinder::fill(const Seed& seed) {
   double spanned = 0.0;
   for (const auto& [first, last] : span) spanned += last - first + 1;
   blob.solidity = blob.area / spanned;
+  blob.outline = outline_distance(blob.ellipse);
   blobs_.push_back(blob);
+}
+
+// First-order distance of the outer pixel edges of the runs to the ellipse, rms.
+double BlobFinder::outline_distance(const EllipseShape& ellipse) const {
+  const Eigen::Matrix2d inverse = ellipse.sigma.inverse();
+  double sum = 0.0;
+  for (const Run& run : runs_)
+    for (const double u : {run.first - 0.5, run.last + 0.5}) {
+      const Eigen::Vector2d p(u - ellipse.centre.x(), run.v - ellipse.centre.y());
+      const Eigen::Vector2d gradient = inverse * p;
+      const double level = p.dot(gradient);
+      const double root = std::sqrt(level);
+      const double distance = (1.0 - root) * root / gradient.norm();
+      sum += distance * distance;
+    }
+  return std::sqrt(sum / (2.0 * static_cast<double>(runs_.size())));
 }
 
 }  // namespace vigia::tracking

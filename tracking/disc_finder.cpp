@@ -28,7 +28,10 @@ FeatureStatus judge_fit(const EdgeFit& fit, const DiscTrackerParameters& paramet
   if (fit.agreement < parameters.min_occluded_agreement) return FeatureStatus::wrong_object;
   if (contrast < parameters.min_contrast || contrast < parameters.min_contrast_to_noise * fit.noise)
     return FeatureStatus::low_contrast;
-  return fit.agreement < parameters.min_agreement ? FeatureStatus::occluded : FeatureStatus::found;
+  if (fit.agreement < parameters.min_agreement) return FeatureStatus::occluded;
+  const double ragged =
+      parameters.max_raggedness_px + parameters.max_raggedness_ratio * ellipse_of(fit.shape).b;
+  return fit.raggedness > ragged ? FeatureStatus::wrong_object : FeatureStatus::found;
 }
 
 EllipseFeature feature_of(const EdgeFit& fit, FeatureStatus status) {
@@ -39,7 +42,7 @@ EllipseFeature feature_of(const EdgeFit& fit, FeatureStatus status) {
   feature.ellipse = estimate.ellipse;
   feature.covariance = estimate.covariance;
   feature.contrast = fit.profile.ground - fit.profile.disc;
-  feature.score = fit.agreement / (1.0 + std::pow(fit.noise / (0.1 * feature.contrast), 2));
+  feature.score = fit.raggedness;
   return feature;
 }
 
@@ -95,7 +98,8 @@ FeatureStatus DiscFinder::judge(DiscCandidate& candidate, const vpImage<unsigned
   // A ragged outline of few pixels scatters the ratios.
   const double slack = 0.5 / ellipse.b;
   if (blob.fill < parameters_.min_fill - slack || blob.fill > parameters_.max_fill + slack ||
-      blob.solidity < parameters_.min_solidity - slack)
+      blob.solidity < parameters_.min_solidity - slack ||
+      blob.outline > parameters_.max_outline_px + parameters_.max_outline_ratio * ellipse.b)
     return FeatureStatus::wrong_object;
 
   candidate.fit = fitter_.fit(image, window, blob.ellipse, {blob.disc, blob.ground, 0.8});

@@ -90,7 +90,7 @@ bool is_ellipse(const EllipseShape& shape) {
 void EdgeFitter::collect(const vpImage<unsigned char>& image, const imaging::Window& bounds) {
   band_shape_ = shape_;
   band_blur_ = profile_.blur;
-  const double half_width = parameters_.band_blurs * profile_.blur + 0.5;
+  const double half_width = parameters_.band_blurs * profile_.blur + 0.3;
   const Ellipse ellipse = ellipse_of(shape_);
   const EllipseShape outer = grown(shape_, half_width);
   const bool has_hole = ellipse.b > half_width + 0.5;
@@ -177,9 +177,8 @@ void EdgeFitter::evaluate() {
     nx = a11 * x + a12 * y;
     ny = a12 * x + a22 * y;
     slope = (nx.square() + ny.square()).sqrt().max(1e-9F).inverse();
-    auto& level = t_;
-    level.head(n) = (x * nx + y * ny).sqrt();
-    t_.head(n) = (1.0F - level.head(n)) * level.head(n) * slope;
+    t_.head(n) = (x * nx + y * ny).sqrt();
+    t_.head(n) *= (1.0F - t_.head(n)) * slope;
     nx *= slope;
     ny *= slope;
   };
@@ -217,32 +216,33 @@ void EdgeFitter::evaluate() {
   jacobian_.col(4).head(n) = (0.5F * density) * ny.square();
 }
 
-void EdgeFitter::accumulate(Normal& normal, Vector& gradient) const {
-  const auto n = static_cast<Eigen::Index>(count_);
+// Jᵀr of the model as evaluated last. Column 5 of J is ∂g/∂G = 1 and never stored.
+void EdgeFitter::project_residual() {
+  const auto residual = residual_.head(count_).matrix();
+  for (int i = 0; i < kUnknowns; ++i)
+    gradient_[i] = static_cast<double>(
+        i == kGround ? residual.sum() : jacobian_.col(i).head(count_).matrix().dot(residual));
+}
+
+// JᵀJ and Jᵀr of the model as evaluated last.
+void EdgeFitter::accumulate() {
+  project_residual();
   for (int i = 0; i < kUnknowns; ++i) {
-    // Column 5 is ∂g/∂G = 1 and never stored.
-    const auto column = jacobian_.col(i).head(n).matrix();
-    gradient[i] = i == 5 ? static_cast<double>(residual_.head(n).sum())
-                         : static_cast<double>(column.dot(residual_.head(n).matrix()));
-    for (int j = 0; j <= i; ++j) {
-      double sum = 0.0;
-      if (i == 5 && j == 5)
-        sum = count_;
-      else if (i == 5)
-        sum = static_cast<double>(jacobian_.col(j).head(n).sum());
-      else if (j == 5)
-        sum = static_cast<double>(column.sum());
-      else
-        sum = static_cast<double>(column.dot(jacobian_.col(j).head(n).matrix()));
-      normal(i, j) = normal(j, i) = sum;
-    }
+    if (i == kGround) continue;
+    const auto column = jacobian_.col(i).head(count_).matrix();
+    normal_(i, kGround) = normal_(kGround, i) = static_cast<double>(column.sum());
+    for (int j = 0; j <= i; ++j)
+      if (j != kGround)
+        normal_(i, j) = normal_(j, i) =
+            static_cast<double>(column.dot(jacobian_.col(j).head(count_).matrix()));
   }
+  normal_(kGround, kGround) = count_;
 }
 
 // Applies one Gauss–Newton step, shortened where it is out of proportion. False when the ellipse
 // is gone.
-bool EdgeFitter::step(const Normal& normal, const Vector& gradient) {
-  Vector delta = normal.ldlt().solve(gradient);
+bool EdgeFitter::step() {
+  Vector delta = normal_.ldlt().solve(gradient_);
   if (!delta.allFinite()) return false;
   const double limit = 1.5 + 0.5 * profile_.blur;
   const Ellipse ellipse = ellipse_of(shape_);
@@ -254,79 +254,111 @@ bool EdgeFitter::step(const Normal& normal, const Vector& gradient) {
   shape_.sigma(0, 1) += delta[3];
   shape_.sigma(1, 0) += delta[3];
   shape_.sigma(1, 1) += delta[4];
+  const double contrast = profile_.ground - profile_.disc + delta[6];
   profile_.ground += delta[5];
-  profile_.disc = profile_.ground - (profile_.ground - delta[5] - profile_.disc + delta[6]);
+  profile_.disc = profile_.ground - contrast;
   profile_.blur = std::clamp(profile_.blur + std::clamp(delta[7], -0.5, 0.5), kMinBlur, kMaxBlur);
   return is_ellipse(shape_);
 }
 
+// Steps until the ellipse has all but come to rest, with the model evaluated there.
 bool EdgeFitter::iterate(const vpImage<unsigned char>& image, const imaging::Window& bounds) {
-  constexpr double kRest = 0.01;  // px: Gauss–Newton's next step is then its square
+  constexpr double kRest = 0.05;  // px: what is left then is a few hundredths of it
   for (int iteration = 0; iteration < parameters_.max_iterations; ++iteration) {
     const EllipseShape before = shape_;
-    Normal normal;
-    Vector gradient;
-    evaluate();
-    accumulate(normal, gradient);
-    if (!step(normal, gradient)) return false;
+    accumulate();
+    if (!step()) return false;
     const double axis = ellipse_of(shape_).b;
-    const double moved = std::max((shape_.centre - before.centre).norm(),
-                                  0.5 * (shape_.sigma - before.sigma).norm() / axis);
-    if (moved < kRest) return true;
-    const double drifted = (shape_.centre - band_shape_.centre).norm() +
-                           0.5 * (shape_.sigma - band_shape_.sigma).norm() / axis;
-    if (drifted > 0.4 * profile_.blur || profile_.blur > 1.25 * band_blur_) collect(image, bounds);
+    const auto distance = [&](const EllipseShape& from) {
+      return (shape_.centre - from.centre).norm() + 0.5 * (shape_.sigma - from.sigma).norm() / axis;
+    };
+    if (distance(band_shape_) > 0.4 * profile_.blur || profile_.blur > 1.25 * band_blur_)
+      collect(image, bounds);
     if (count_ < 4 * kUnknowns) return false;
+    evaluate();
+    if (distance(before) < kRest) return true;
   }
   return false;
 }
 
-// Leaves out the pixels of the sectors that disagree; the share of the outline that stays.
-double EdgeFitter::drop_bad_sectors() {
-  evaluate();
+// Leaves out the pixels of the sectors that disagree with the model as evaluated last; the share of
+// the outline that stays.
+double EdgeFitter::drop_bad_sectors(double& raggedness) {
+  const auto n = static_cast<Eigen::Index>(count_);
   const double l11 = std::sqrt(shape_.sigma(0, 0));
   const double l21 = shape_.sigma(0, 1) / l11;
   const double l22 = std::sqrt(shape_.sigma(1, 1) - l21 * l21);
-  const Eigen::Vector2d shift = shape_.centre - band_shape_.centre;
-  std::array<double, kSectors> square{};
-  std::array<int, kSectors> pixels{};
-  for (int i = 0; i < count_; ++i) {
-    const double x = (static_cast<double>(u_[i]) - shift.x()) / l11;
-    const double y = (static_cast<double>(v_[i]) - shift.y() - l21 * x) / l22;
-    // A substitute for the angle that needs no atan2: 0..4 once round.
-    const double turn = y / (std::abs(x) + std::abs(y) + 1e-12);
-    const double angle = x >= 0.0 ? 1.0 + turn : 3.0 - turn;
-    const auto index = static_cast<std::size_t>(
-        std::clamp(static_cast<int>(angle * (kSectors / 4.0)), 0, kSectors - 1));
+  auto x = work_.col(0).head(n);
+  auto y = work_.col(1).head(n);
+  auto turn = work_.col(2).head(n);
+  x = (u_.head(n) - static_cast<float>(shape_.centre.x() - band_shape_.centre.x())) *
+      static_cast<float>(1.0 / l11);
+  y = (v_.head(n) - static_cast<float>(shape_.centre.y() - band_shape_.centre.y()) -
+       static_cast<float>(l21) * x) *
+      static_cast<float>(1.0 / l22);
+  // A substitute for the angle that needs no arc tangent: 0..4 once round.
+  constexpr float kPerTurn = kSectors / 4.0F;
+  turn = kPerTurn * y / (x.abs() + y.abs() + 1e-9F);
+  // ∂g/∂d, whose product with the residual tells how far a sector lies outside.
+  auto edge = work_.col(3).head(n);
+  edge = jacobian_.col(0).head(n).square() + jacobian_.col(1).head(n).square();
+  auto pull = work_.col(4).head(n);
+  pull = edge.sqrt() * residual_.head(n);
+
+  struct Sector {
+    double square = 0.0;
+    double edge = 0.0;
+    double pull = 0.0;
+    int pixels = 0;
+  };
+  std::array<Sector, kSectors> sectors{};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const float angle = x[i] >= 0.0F ? kPerTurn + turn[i] : 3.0F * kPerTurn - turn[i];
+    const auto index =
+        static_cast<std::size_t>(std::clamp(static_cast<int>(angle), 0, kSectors - 1));
     sector_[static_cast<std::size_t>(i)] = static_cast<unsigned char>(index);
-    square[index] += static_cast<double>(residual_[i]) * static_cast<double>(residual_[i]);
-    ++pixels[index];
+    Sector& sector = sectors[index];
+    sector.square += static_cast<double>(residual_[i] * residual_[i]);
+    sector.edge += static_cast<double>(edge[i]);
+    sector.pull += static_cast<double>(pull[i]);
+    ++sector.pixels;
   }
   std::array<double, kSectors> sorted{};
   for (std::size_t k = 0; k < kSectors; ++k) {
-    square[k] = pixels[k] > 0 ? square[k] / pixels[k] : 0.0;
-    sorted[k] = square[k];
+    sectors[k].square /= std::max(1, sectors[k].pixels);
+    sorted[k] = sectors[k].square;
   }
   std::nth_element(sorted.begin(), sorted.begin() + kSectors / 2, sorted.end());
+  const double variance = std::max(sorted[kSectors / 2], kQuantisationVariance);
   const double contrast = profile_.ground - profile_.disc;
-  const double noise_limit = parameters_.sector_noise_ratio * parameters_.sector_noise_ratio *
-                             std::max(sorted[kSectors / 2], kQuantisationVariance);
-  const double contrast_limit = std::pow(parameters_.sector_contrast_ratio * contrast, 2);
-  const double limit = std::max(noise_limit, contrast_limit);
-
+  const double square_limit = std::max(std::pow(parameters_.sector_noise_ratio, 2) * variance,
+                                       std::pow(parameters_.sector_contrast_ratio * contrast, 2));
+  const double offset_limit = std::max(parameters_.sector_offset_px,
+                                       parameters_.sector_offset_ratio * ellipse_of(shape_).b);
+  std::array<bool, kSectors> bad{};
   int good = 0;
-  for (std::size_t k = 0; k < kSectors; ++k) good += pixels[k] > 0 && square[k] <= limit ? 1 : 0;
-  if (good < kSectors) {
-    int kept = 0;
-    for (int i = 0; i < count_; ++i) {
-      if (square[sector_[static_cast<std::size_t>(i)]] > limit) continue;
-      u_[kept] = u_[i];
-      v_[kept] = v_[i];
-      grey_[kept] = grey_[i];
-      ++kept;
-    }
-    count_ = kept;
+  raggedness = 0.0;
+  for (std::size_t k = 0; k < kSectors; ++k) {
+    const Sector& sector = sectors[k];
+    const double offset = sector.edge > 0.0 ? sector.pull / sector.edge : 0.0;
+    if (sector.edge > 0.0) raggedness += (offset * offset - variance / sector.edge) / kSectors;
+    bad[k] =
+        sector.pixels == 0 || sector.square > square_limit ||
+        (std::abs(offset) > offset_limit &&
+         std::abs(offset) > parameters_.sector_offset_sigmas * std::sqrt(variance / sector.edge));
+    good += bad[k] ? 0 : 1;
   }
+  raggedness = std::sqrt(std::max(0.0, raggedness));
+  if (good == kSectors) return 1.0;
+  int kept = 0;
+  for (int i = 0; i < count_; ++i) {
+    if (bad[sector_[static_cast<std::size_t>(i)]]) continue;
+    u_[kept] = u_[i];
+    v_[kept] = v_[i];
+    grey_[kept] = grey_[i];
+    ++kept;
+  }
+  count_ = kept;
   return static_cast<double>(good) / kSectors;
 }
 
@@ -338,27 +370,29 @@ EdgeFit EdgeFitter::fit(const vpImage<unsigned char>& image, const imaging::Wind
   profile_ = profile;
   profile_.blur = std::clamp(profile.blur, kMinBlur, kMaxBlur);
   collect(image, bounds);
-  if (count_ < 4 * kUnknowns || !iterate(image, bounds)) return result;
+  if (count_ < 4 * kUnknowns) return result;
+  evaluate();
+  if (!iterate(image, bounds)) return result;
 
-  result.agreement = drop_bad_sectors();
+  result.agreement = drop_bad_sectors(result.raggedness);
   if (result.agreement < 1.0) {
     // Without the bad sectors the ellipse moves; no new band, or they would be back.
     for (int iteration = 0; iteration < 3; ++iteration) {
-      Normal normal;
-      Vector gradient;
+      if (count_ < 4 * kUnknowns) return result;
       evaluate();
-      accumulate(normal, gradient);
-      if (count_ < 4 * kUnknowns || !step(normal, gradient)) return result;
+      accumulate();
+      if (!step()) return result;
     }
     evaluate();
   }
-  Normal normal;
-  Vector gradient;
-  accumulate(normal, gradient);
-  const double squares = static_cast<double>(residual_.head(count_).matrix().squaredNorm());
+  // The last step is so small that the normal matrix of the one before serves.
+  project_residual();
+  const double squares = static_cast<double>(residual_.head(count_).matrix().squaredNorm()) -
+                         gradient_.dot(normal_.ldlt().solve(gradient_));
+  if (!step()) return result;
   const double variance = std::max(squares / (count_ - kUnknowns), kQuantisationVariance);
-  const Normal covariance = variance * normal.ldlt().solve(Normal::Identity());
-  result.converged = covariance.allFinite() && is_ellipse(shape_);
+  const Normal covariance = variance * normal_.ldlt().solve(Normal::Identity());
+  result.converged = covariance.allFinite();
   result.shape = shape_;
   result.covariance = covariance.topLeftCorner<5, 5>();
   result.covariance = 0.5 * (result.covariance + result.covariance.transpose()).eval();

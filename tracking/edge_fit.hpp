@@ -14,7 +14,7 @@ namespace vigia::tracking {
 /// How an outline is fitted to grey values.
 struct EdgeFitParameters {
   /// Half width of the fitted band round the outline, in standard deviations of the edge's blur.
-  double band_blurs = 2.8;
+  double band_blurs = 2.5;
   int max_iterations = 8;
   /// A longer band is thinned out to about so many pixels.
   int max_pixels = 1500;
@@ -22,6 +22,11 @@ struct EdgeFitParameters {
   /// of the median sector's, and a fraction of the contrast.
   double sector_noise_ratio = 3.0;
   double sector_contrast_ratio = 0.2;
+  /// It disagrees as well when it lies off the ellipse by more than so many px or this share of the
+  /// semi-minor axis, whichever is more, and by this multiple of its standard deviation.
+  double sector_offset_px = 0.35;
+  double sector_offset_ratio = 0.03;
+  double sector_offset_sigmas = 4.0;
 };
 
 /// Grey levels on both sides of an outline and the standard deviation of its blur in px, with the
@@ -39,9 +44,10 @@ struct EdgeFit {
   /// Of (u, v, Σ₁₁, Σ₁₂, Σ₂₂).
   Eigen::Matrix<double, 5, 5> covariance = Eigen::Matrix<double, 5, 5>::Identity();
   EdgeProfile profile;
-  double noise = 0.0;      ///< standard deviation of the residuals, grey levels
-  double agreement = 0.0;  ///< share of the outline's sectors that agree with the model
-  bool complete = false;   ///< the whole band lay inside the bounds
+  double noise = 0.0;       ///< standard deviation of the residuals, grey levels
+  double raggedness = 0.0;  ///< rms distance of the sectors from the ellipse beyond the noise, px
+  double agreement = 0.0;   ///< share of the outline's sectors that agree with the model
+  bool complete = false;    ///< the whole band lay inside the bounds
 };
 
 /// Fits an ellipse with a blurred edge to the grey values in a band round its outline, by
@@ -61,25 +67,30 @@ class EdgeFitter {
 
  private:
   static constexpr int kUnknowns = 8;
+  static constexpr int kGround = 5;  // column of the ground level
   static constexpr int kSectors = 24;
   using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
   using Vector = Eigen::Matrix<double, kUnknowns, 1>;
 
   void collect(const vpImage<unsigned char>& image, const imaging::Window& bounds);
   void evaluate();
-  void accumulate(Normal& normal, Vector& gradient) const;
-  bool step(const Normal& normal, const Vector& gradient);
-  double drop_bad_sectors();
+  void project_residual();
+  void accumulate();
+  bool step();
+  double drop_bad_sectors(double& raggedness);
   bool iterate(const vpImage<unsigned char>& image, const imaging::Window& bounds);
 
   EdgeFitParameters parameters_;
 
-  // The state of the fit; the origin is where the band's coordinates count from.
+  // The state of the fit, and the ellipse and blur for which the band was collected.
   EllipseShape shape_;
   EdgeProfile profile_;
   EllipseShape band_shape_;
   double band_blur_ = 0.0;
   bool complete_ = false;
+
+  Normal normal_;
+  Vector gradient_;
 
   // One column a quantity, one row a pixel of the band.
   int count_ = 0;

@@ -148,12 +148,17 @@ void SyntheticImage::paint_rectangle(double u, double v, double width, double he
 
 void SyntheticImage::paint_blob(double u, double v, double size, double level,
                                 RandomStream& random) {
-  std::vector<Eigen::Vector3d> discs;
-  const std::size_t count = 3 + random.index(4);
-  for (std::size_t k = 0; k < count; ++k)
-    discs.emplace_back(u + size * random.uniform(-0.6, 0.6), v + size * random.uniform(-0.6, 0.6),
-                       size * random.uniform(0.2, 0.55));
-  paint({u, v, 1.2 * size, 1.0, 0.0}, level, [&](const Eigen::Vector2d& p) {
+  // Each disc sticks out of the one before by a good part of its own size.
+  std::vector<Eigen::Vector3d> discs{{u, v, 0.5 * size}};
+  const std::size_t count = 2 + random.index(3);
+  for (std::size_t k = 0; k < count; ++k) {
+    const Eigen::Vector3d& last = discs.back();
+    const double angle = random.uniform(0.0, 2.0 * kPi);
+    const double radius = size * random.uniform(0.25, 0.5);
+    discs.emplace_back(last.x() + last.z() * std::cos(angle), last.y() + last.z() * std::sin(angle),
+                       radius);
+  }
+  paint({u, v, 2.6 * size, 1.0, 0.0}, level, [&](const Eigen::Vector2d& p) {
     double best = -1e9;
     for (const Eigen::Vector3d& disc : discs)
       best = std::max(best, disc.z() - (p - disc.head<2>()).norm());
@@ -174,11 +179,21 @@ void SyntheticImage::paint_clutter(int count, const std::vector<Ellipse>& keep_f
     const double level = random.uniform(20.0, 110.0);
     const double angle = random.uniform(0.0, kPi);
     switch (random.index(5)) {
-      case 0: paint_rectangle(u, v, 2.0 * size, size * random.uniform(0.4, 2.0), angle, level); break;
-      case 1: paint_ring({u, v, size, size * random.uniform(0.7, 1.0), angle}, 0.5, level); break;
-      case 2: paint_half_disc({u, v, size, size, 0.0}, angle, level); break;
-      case 3: paint_ellipse({u, v, size, 0.18 * size, angle}, level); break;
-      default: paint_blob(u, v, size, level, random); break;
+      case 0:
+        paint_rectangle(u, v, 2.0 * size, size * random.uniform(0.4, 2.0), angle, level);
+        break;
+      case 1:
+        paint_ring({u, v, size, size * random.uniform(0.7, 1.0), angle}, 0.5, level);
+        break;
+      case 2:
+        paint_half_disc({u, v, size, size, 0.0}, angle, level);
+        break;
+      case 3:
+        paint_ellipse({u, v, size, 0.18 * size, angle}, level);
+        break;
+      default:
+        paint_blob(u, v, size, level, random);
+        break;
     }
     --count;
   }

@@ -12,8 +12,8 @@
 namespace vigia::tracking::testing {
 
 /// A picture in light, before noise and digitising, into which things are painted one after the
-/// other. Edges are blurred by a Gaussian and then integrated over the pixel, as lens and sensor do,
-/// on a three times finer grid. Nothing here uses the trackers' edge model.
+/// other. Edges are blurred by a Gaussian and then integrated over the pixel, as lens and sensor
+/// do, on a three times finer grid. Nothing here uses the trackers' edge model.
 class SyntheticImage {
  public:
   SyntheticImage(int width, int height, double ground, double blur = 0.7);
@@ -29,7 +29,9 @@ class SyntheticImage {
       for (int x = 0; x < fine_width_; ++x) {
         const double d = signed_distance(Eigen::Vector2d(fine_u(x), fine_v(y))) * kFine;
         fine_[static_cast<std::size_t>(y * fine_width_ + x)] =
-            static_cast<float>(d > 0.5 ? 1.0 : d < -0.5 ? 0.0 : d + 0.5);
+            static_cast<float>(d > 0.5    ? 1.0
+                               : d < -0.5 ? 0.0
+                                          : d + 0.5);
       }
     end_patch(level);
   }
@@ -37,8 +39,7 @@ class SyntheticImage {
   void paint_ellipse(const Ellipse& ellipse, double level);
   void paint_ring(const Ellipse& ellipse, double hole, double level);
   void paint_half_disc(const Ellipse& ellipse, double angle, double level);
-  void paint_rectangle(double u, double v, double width, double height, double angle,
-                       double level);
+  void paint_rectangle(double u, double v, double width, double height, double angle, double level);
   /// A dark blob of three to six overlapping discs.
   void paint_blob(double u, double v, double size, double level, RandomStream& random);
   /// Dark clutter of every kind, @p count pieces, none of them within @p clearance of @p keep_free.

@@ -15,12 +15,18 @@ struct DiscTrackerParameters {
   Polarity polarity = Polarity::dark;
   double min_axis_px = 3.0;     ///< smallest semi-minor axis that is looked for
   double min_axis_ratio = 0.3;  ///< flattest ellipse b/a where nothing is known
-  double min_contrast = 20.0;   ///< between disc and ground, grey levels
+  double min_contrast = 30.0;   ///< between disc and ground, grey levels
   double min_contrast_to_noise = 4.0;
   /// Bounds of a blob's area over π a b of its moments, and of its area over its rows' spans.
   double min_fill = 0.93;
   double max_fill = 1.06;
   double min_solidity = 0.95;
+  /// Largest rms distance of a blob's outline, and of the fitted outline's sectors (less what the
+  /// noise explains), from an ellipse: px, and further px per px of the semi-minor axis.
+  double max_outline_px = 0.45;
+  double max_outline_ratio = 0.02;
+  double max_raggedness_px = 0.18;
+  double max_raggedness_ratio = 0.005;
   /// Smallest share of the outline that must agree with a blurred ellipse.
   double min_agreement = 0.9;
   /// Below this share the outline is no disc's at all; above, the disc is occluded.
