@@ -58,12 +58,12 @@ void draw_sight_lines(const Sheet& sheet, const MapView& view, const MapDrive& d
 
 void draw_paths(const Sheet& sheet, const MapView& view, const MapDrive& drive,
                 const DriveStyle& style) {
-  sheet.polyline(view(drive.planned.points()));
-  sheet.stroke(style.planned);
   sheet.polyline(view(positions(drive.odometry)));
   sheet.stroke(style.odometry);
   sheet.polyline(view(positions(drive.estimate)));
   sheet.stroke(style.estimate);
+  sheet.polyline(view(drive.planned.points()));
+  sheet.stroke(style.planned);
 }
 
 void draw_ellipses(const Sheet& sheet, const MapView& view, const MapDrive& drive,

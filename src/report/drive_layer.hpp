@@ -12,7 +12,7 @@ namespace vigia::report {
 
 /// How the lines of the map, the chart and the legend look: one kind each.
 struct DriveStyle {
-  Stroke planned{palette::kInk, 1.5, {9.0, 6.0}};
+  Stroke planned{palette::kInk, 1.2, {9.0, 7.0}};
   Stroke truth{palette::kTruth.with_alpha(0.75), 8.0};
   Stroke estimate{palette::kBlue, 2.5};
   Stroke odometry{palette::kVermillion, 2.2, {12.0, 4.0, 2.0, 4.0}};

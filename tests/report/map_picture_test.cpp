@@ -31,7 +31,7 @@ std::string bytes_of(const std::filesystem::path& file) {
 }
 
 class MapPicture : public ::testing::Test {
- protected:
+ public:
   MapPicture() {
     std::string name = (std::filesystem::temp_directory_path() / "vigia-report-XXXXXX").string();
     if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder: " + name);
@@ -39,6 +39,7 @@ class MapPicture : public ::testing::Test {
   }
   ~MapPicture() override { std::filesystem::remove_all(folder_); }
 
+ protected:
   std::string message_of_drawing(const MapDrive& drive, const std::filesystem::path& file) {
     try {
       draw_map(drive, file);
