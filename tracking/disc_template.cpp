@@ -1,0 +1,257 @@
+#include "disc_template.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include "vigia/core/angle.hpp"
+
+namespace vigia::tracking {
+namespace {
+
+constexpr double kQuantisationVariance = 1.0 / 12.0;
+constexpr double kReach = 4.5;  // blurs beyond which the model is flat
+
+/// The blurred disc at one point and how it moves with centre and Σ.
+struct ModelValue {
+  double share;
+  Eigen::Matrix<double, 5, 1> gradient;
+};
+
+/// The model's edge: an error function of the distance, shifted by what the blur does to a curved
+/// edge. Within the outline's reach the distance is exact to third order.
+class BlurredDisc {
+ public:
+  BlurredDisc(const EllipseShape& shape, double blur)
+      : centre_(shape.centre),
+        inverse_(shape.sigma.inverse()),
+        determinant_(shape.sigma.determinant()),
+        axis_(ellipse_of(shape).b),
+        blur_(blur) {}
+
+  ModelValue at(double u, double v) const {
+    ModelValue value{0.0, Eigen::Matrix<double, 5, 1>::Zero()};
+    Eigen::Vector2d p(u - centre_.x(), v - centre_.y());
+    const double level = std::sqrt(p.dot(inverse_ * p));
+    // (1 − level)·b is a lower bound of the distance's size inside, and level·… outside too.
+    if (std::abs(1.0 - level) * axis_ > kReach * blur_) {
+      value.share = level < 1.0 ? 1.0 : 0.0;
+      return value;
+    }
+    double distance = 0.0;
+    Eigen::Vector2d normal = Eigen::Vector2d::UnitX();
+    for (int step = 0; step < 2; ++step) {
+      const Eigen::Vector2d gradient = inverse_ * p;
+      const double length = std::max(gradient.norm(), 1e-9);
+      const double root = std::sqrt(p.dot(gradient));
+      normal = gradient / length;
+      const double d = (1.0 - root) * root / length;
+      p += d * normal;
+      distance += d;
+    }
+    normal = (inverse_ * p).normalized();
+    const double h = std::max(p.dot(normal), 0.1);
+    const double curvature = h * h * h / determinant_;
+    const double t = (distance - 0.5 * curvature * blur_ * blur_) / blur_;
+    value.share = 0.5 * std::erfc(-t / std::sqrt(2.0));
+    const double density = std::exp(-0.5 * t * t) / (std::sqrt(2.0 * kPi) * blur_);
+    value.gradient << normal.x(), normal.y(), normal.x() * normal.x() / (2.0 * h),
+        normal.x() * normal.y() / h, normal.y() * normal.y() / (2.0 * h);
+    value.gradient *= density;
+    return value;
+  }
+
+ private:
+  Eigen::Vector2d centre_;
+  Eigen::Matrix2d inverse_;
+  double determinant_;
+  double axis_;
+  double blur_;
+};
+
+constexpr int kSectors = 16;
+
+std::size_t sector_of(const Eigen::Vector2d& p) {
+  const double turn = (std::atan2(p.y(), p.x()) + kPi) / (2.0 * kPi) * kSectors;
+  return static_cast<std::size_t>(std::clamp(static_cast<int>(turn), 0, kSectors - 1));
+}
+
+}  // namespace
+
+double correlation_score(double r) {
+  const double positive = std::max(r, 0.0);
+  return positive * positive;
+}
+
+DiscTemplate::DiscTemplate(const EllipseShape& shape, double margin, double blur)
+    : window_(window_round(shape, margin)) {
+  const BlurredDisc disc(shape, blur);
+  model_.reserve(static_cast<std::size_t>(window_.width) *
+                 static_cast<std::size_t>(window_.height));
+  double sum = 0.0;
+  for (int v = window_.v; v < window_.bottom(); ++v)
+    for (int u = window_.u; u < window_.right(); ++u) {
+      const double share = disc.at(u, v).share;
+      model_.push_back(static_cast<float>(share));
+      sum += share;
+    }
+  const auto mean = static_cast<float>(sum / static_cast<double>(model_.size()));
+  double squares = 0.0;
+  for (float& value : model_) {
+    value -= mean;
+    squares += static_cast<double>(value * value);
+  }
+  norm_ = std::sqrt(squares);
+}
+
+bool DiscTemplate::fits(int du, int dv, const imaging::Window& bounds) const {
+  return contains(bounds, {window_.u + du, window_.v + dv, window_.width, window_.height});
+}
+
+double DiscTemplate::correlation(const vpImage<unsigned char>& image, int du, int dv) const {
+  double product = 0.0;
+  std::int64_t sum = 0;
+  std::int64_t squares = 0;
+  const float* model = model_.data();
+  for (int row = 0; row < window_.height; ++row, model += window_.width) {
+    const unsigned char* grey = image[static_cast<unsigned>(window_.v + dv + row)] + window_.u + du;
+    int row_sum = 0;
+    int row_squares = 0;
+    float row_product = 0.0F;
+    for (int i = 0; i < window_.width; ++i) {
+      const int value = grey[i];
+      row_sum += value;
+      row_squares += value * value;
+      row_product += model[i] * static_cast<float>(value);
+    }
+    sum += row_sum;
+    squares += row_squares;
+    product += static_cast<double>(row_product);
+  }
+  // Armingol eq. 2; Σ(M − mean)(I − mean) = Σ(M − mean) I.
+  const double n = static_cast<double>(model_.size());
+  const double variance =
+      static_cast<double>(squares) - static_cast<double>(sum) * static_cast<double>(sum) / n;
+  return variance > n * kQuantisationVariance ? product / (norm_ * std::sqrt(variance)) : 0.0;
+}
+
+TemplateMatch match_template(const vpImage<unsigned char>& image, const imaging::Window& bounds,
+                             const EllipseShape& start, const TemplateMatchParameters& parameters) {
+  constexpr double kRest = 1e-3;  // px
+  constexpr int kUnknowns = 7;
+  using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+  using Vector = Eigen::Matrix<double, kUnknowns, 1>;
+  struct Sums {
+    Normal normal = Normal::Zero();
+    Vector product = Vector::Zero();  // Jᵀ of the grey value, gain and offset being linear
+    double squares = 0.0;
+    int count = 0;
+  };
+  TemplateMatch match;
+  match.shape = start;
+  double gain = 0.0;
+  double offset = 0.0;
+
+  // The gain enters the Jacobian, so it is solved for first from the columns of share and one.
+  bool resting = false;
+  for (int iteration = 0; iteration < parameters.max_iterations; ++iteration) {
+    if (ellipse_of(match.shape).b < 1.5) return match;
+    const imaging::Window window =
+        intersect(window_round(match.shape, parameters.margin_px), bounds);
+    const BlurredDisc disc(match.shape, parameters.blur_px);
+    Sums sums;
+    for (int v = window.v; v < window.bottom(); ++v)
+      for (int u = window.u; u < window.right(); ++u) {
+        const ModelValue value = disc.at(u, v);
+        const double grey = image[static_cast<unsigned>(v)][u];
+        Vector row;
+        row << value.gradient, value.share, 1.0;
+        if (value.gradient[0] == 0.0 && value.gradient[1] == 0.0) {
+          sums.normal.bottomRightCorner<2, 2>() += row.tail<2>() * row.tail<2>().transpose();
+          sums.product.tail<2>() += row.tail<2>() * grey;
+        } else {
+          sums.normal.selfadjointView<Eigen::Lower>().rankUpdate(row);
+          sums.product += row * grey;
+        }
+        sums.squares += grey * grey;
+        ++sums.count;
+      }
+    sums.normal.triangularView<Eigen::StrictlyUpper>() = sums.normal.transpose();
+    if (sums.count < 4 * kUnknowns) return match;
+
+    const Eigen::Vector2d levels =
+        sums.normal.bottomRightCorner<2, 2>().ldlt().solve(sums.product.tail<2>());
+    gain = levels[0];
+    offset = levels[1];
+    const double n = sums.count;
+    const double mean = sums.product[6] / n;
+    const double grey_variance = sums.squares - n * mean * mean;
+    const double model_variance = sums.normal(5, 5) - sums.normal(5, 6) * sums.normal(5, 6) / n;
+    const double covariance = sums.product[5] - sums.normal(5, 6) * mean;
+    if (grey_variance <= n * kQuantisationVariance || model_variance <= 0.0) return match;
+    match.correlation = -covariance / std::sqrt(grey_variance * model_variance);
+    match.contrast = -gain;
+    const double residual_squares =
+        std::max(sums.squares - levels.dot(sums.product.tail<2>()), 0.0);
+    const double variance =
+        std::max(residual_squares / (sums.count - kUnknowns), kQuantisationVariance);
+    match.noise = std::sqrt(variance);
+
+    // Jᵀr with r = I − gain·M − offset, J = (gain·∂M, M, 1).
+    Vector scale;
+    scale << Eigen::Matrix<double, 5, 1>::Constant(gain), 1.0, 1.0;
+    Vector residual = sums.product - sums.normal.col(5) * gain - sums.normal.col(6) * offset;
+    residual = residual.cwiseProduct(scale);
+    const Normal normal = scale.asDiagonal() * sums.normal * scale.asDiagonal();
+    const auto factor = normal.ldlt();
+    match.covariance = (variance * factor.solve(Normal::Identity())).topLeftCorner<5, 5>();
+    if (resting) {
+      match.converged = match.covariance.allFinite();
+      break;
+    }
+    Vector delta = factor.solve(residual);
+    if (!delta.allFinite()) return match;
+    const double axis = ellipse_of(match.shape).b;
+    const double movement = delta.head<2>().norm() + 0.5 * delta.segment<3>(2).norm() / axis;
+    if (movement > 1.5) delta *= 1.5 / movement;
+    match.shape.centre += delta.head<2>();
+    match.shape.sigma(0, 0) += delta[2];
+    match.shape.sigma(0, 1) += delta[3];
+    match.shape.sigma(1, 0) += delta[3];
+    match.shape.sigma(1, 1) += delta[4];
+    if (!(match.shape.sigma.determinant() > 0.0) || match.shape.sigma(0, 0) <= 0.0) return match;
+    resting = movement < kRest;
+  }
+
+  // The sectors' residuals, for what a correlation over all pixels does not tell.
+  std::array<double, kSectors> square{};
+  std::array<int, kSectors> pixels{};
+  const BlurredDisc disc(match.shape, parameters.blur_px);
+  const imaging::Window window = intersect(window_round(match.shape, parameters.margin_px), bounds);
+  const double beyond = 1.0 + parameters.margin_px / ellipse_of(match.shape).a;
+  const Eigen::Matrix2d inverse = match.shape.sigma.inverse();
+  for (int v = window.v; v < window.bottom(); ++v)
+    for (int u = window.u; u < window.right(); ++u) {
+      const Eigen::Vector2d p = Eigen::Vector2d(u, v) - match.shape.centre;
+      const double level = std::sqrt(p.dot(inverse * p));
+      if (level > beyond || level < 2.0 - beyond) continue;
+      const double r = image[static_cast<unsigned>(v)][u] - gain * disc.at(u, v).share - offset;
+      const std::size_t k = sector_of(p);
+      square[k] += r * r;
+      ++pixels[k];
+    }
+  for (std::size_t k = 0; k < kSectors; ++k) square[k] /= std::max(1, pixels[k]);
+  std::array<double, kSectors> sorted = square;
+  std::nth_element(sorted.begin(), sorted.begin() + kSectors / 2, sorted.end());
+  const double limit = std::max(
+      {9.0 * sorted[kSectors / 2], kQuantisationVariance, std::pow(0.2 * match.contrast, 2)});
+  int good = 0;
+  for (std::size_t k = 0; k < kSectors; ++k) good += square[k] <= limit ? 1 : 0;
+  match.agreement = static_cast<double>(good) / kSectors;
+  return match;
+}
+
+}  // namespace vigia::tracking

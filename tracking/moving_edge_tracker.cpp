@@ -1,0 +1,236 @@
+#include "vigia/tracking/moving_edge_tracker.hpp"
+
+#include "ellipse_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <Eigen/LU>
+#include <visp3/core/vpException.h>
+#include <visp3/me/vpMeEllipse.h>
+
+#include "vigia/core/angle.hpp"
+
+namespace vigia::tracking {
+namespace {
+
+using imaging::Canvas;
+using imaging::Window;
+
+/// vpMeEllipse with its count of sites made readable.
+class EdgeSites : public vpMeEllipse {
+ public:
+  unsigned good_sites() const { return m_numberOfGoodPoints; }
+  unsigned expected_sites() const { return m_expectedDensity; }
+};
+
+struct EdgeMeasurement {
+  Ellipse ellipse;
+  double scatter = 0.0;  ///< rms distance of the sites from the ellipse, px
+  double held = 0.0;     ///< share of the sites that hold on
+  unsigned sites = 0;
+};
+
+EllipseFeature lost(FeatureStatus status) {
+  EllipseFeature feature;
+  feature.status = status;
+  return feature;
+}
+
+// Rms of the first-order distances of the sites that are in use.
+double scatter_of(EdgeSites& sites, const EllipseShape& shape) {
+  const Eigen::Matrix2d inverse = shape.sigma.inverse();
+  double sum = 0.0;
+  int count = 0;
+  for (const vpMeSite& site : sites.getMeList()) {
+    if (site.getState() != vpMeSite::NO_SUPPRESSION) continue;
+    const Eigen::Vector2d p(site.get_jfloat() - shape.centre.x(),
+                            site.get_ifloat() - shape.centre.y());
+    const Eigen::Vector2d gradient = inverse * p;
+    const double level = std::sqrt(p.dot(gradient));
+    const double d = (1.0 - level) * level / std::max(gradient.norm(), 1e-9);
+    sum += d * d;
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0.0;
+}
+
+// Mean grey level inside less that outside, on two ellipses beside the outline.
+double contrast_of(const vpImage<unsigned char>& image, const Ellipse& ellipse) {
+  constexpr int kSamples = 24;
+  const auto level = [&](double growth) {
+    double sum = 0.0;
+    for (int k = 0; k < kSamples; ++k) {
+      const double t = 2.0 * kPi * k / kSamples;
+      const double x = (ellipse.a + growth) * std::cos(t);
+      const double y = (ellipse.b + growth) * std::sin(t);
+      const double u = ellipse.u + x * std::cos(ellipse.psi) - y * std::sin(ellipse.psi);
+      const double v = ellipse.v + x * std::sin(ellipse.psi) + y * std::cos(ellipse.psi);
+      const long row = std::clamp(std::lround(v), 0L, static_cast<long>(image.getHeight()) - 1);
+      const long column = std::clamp(std::lround(u), 0L, static_cast<long>(image.getWidth()) - 1);
+      sum += image[static_cast<unsigned>(row)][column];
+    }
+    return sum / kSamples;
+  };
+  return level(3.0) - level(-std::min(3.0, 0.5 * ellipse.b));
+}
+
+}  // namespace
+
+class MovingEdgeTracker::State {
+ public:
+  explicit State(const MovingEdgeTrackerParameters& parameters)
+      : parameters_(parameters), seeds_(parameters.finder) {
+    edges_.setRange(parameters.range_px);
+    edges_.setSampleStep(parameters.sample_step_px);
+    edges_.setMaskSize(parameters.mask_size);
+    edges_.setThreshold(parameters.threshold);
+    edges_.setMaskNumber(180);
+    edges_.initMask();
+  }
+
+  std::optional<EdgeMeasurement> measure(const vpImage<unsigned char>& image,
+                                         const EllipseShape& start);
+  EllipseFeature follow(Canvas& canvas, const EllipseShape& start, const EllipseShape& expected);
+  EllipseFeature feature_of(const EdgeMeasurement& measured, double contrast) const;
+
+  MovingEdgeTrackerParameters parameters_;
+  vpMe edges_;
+  DiscTracker seeds_;
+  vpImage<unsigned char> crop_;
+  bool tracking_ = false;
+  EllipseShape shape_;
+  Eigen::Vector2d motion_ = Eigen::Vector2d::Zero();
+};
+
+// ViSP throws when too few sites hold; everything that it throws means a lost ellipse.
+std::optional<EdgeMeasurement> MovingEdgeTracker::State::measure(
+    const vpImage<unsigned char>& image, const EllipseShape& start) {
+  vpColVector parameters(5);
+  parameters[0] = start.centre.x();
+  parameters[1] = start.centre.y();
+  // ViSP's normalised moments: n₂₀, n₁₁, n₀₂ = Σ/4.
+  parameters[2] = 0.25 * start.sigma(0, 0);
+  parameters[3] = 0.25 * start.sigma(0, 1);
+  parameters[4] = 0.25 * start.sigma(1, 1);
+  EdgeSites sites;
+  sites.setMe(&edges_);
+  sites.setDisplay(vpMeSite::NONE);
+  EdgeMeasurement out;
+  try {
+    sites.initTracking(image, parameters);
+    sites.track(image);
+  } catch (const vpException&) {
+    return std::nullopt;
+  }
+  const vpColVector axes = sites.get_ABE();
+  out.ellipse = {sites.getCenter().get_u(), sites.getCenter().get_v(), axes[0], axes[1], axes[2]};
+  const EllipseShape shape = shape_of(out.ellipse);
+  if (!shape.sigma.allFinite() || !shape.centre.allFinite() || out.ellipse.b < 2.0)
+    return std::nullopt;
+  out.ellipse = ellipse_of(shape);
+  out.sites = sites.good_sites();
+  out.held = std::min(1.0, static_cast<double>(out.sites) / std::max(1U, sites.expected_sites()));
+  out.scatter = scatter_of(sites, shape);
+  return out;
+}
+
+EllipseFeature MovingEdgeTracker::State::feature_of(const EdgeMeasurement& measured,
+                                                    double contrast) const {
+  EllipseFeature feature;
+  feature.status = FeatureStatus::found;
+  feature.ellipse = measured.ellipse;
+  feature.contrast = contrast;
+  feature.score = measured.held;
+  // The scatter averages out over the sites, the bias does not.
+  const double scatter = 2.0 * measured.scatter * measured.scatter / std::max(1U, measured.sites);
+  const double centre = scatter + parameters_.centre_bias_px * parameters_.centre_bias_px;
+  const double axis = scatter + parameters_.axis_bias_px * parameters_.axis_bias_px;
+  const double difference = measured.ellipse.a - measured.ellipse.b;
+  const double psi = 1.0 / (difference * difference / (0.5 * axis) + 12.0 / (kPi * kPi));
+  feature.covariance.setZero();
+  feature.covariance.diagonal() << centre, centre, axis, axis, psi;
+  return feature;
+}
+
+EllipseFeature MovingEdgeTracker::State::follow(Canvas& canvas, const EllipseShape& start,
+                                                const EllipseShape& expected) {
+  const Window frame = canvas.frame().full();
+  const double margin = 2.0 * parameters_.range_px + parameters_.mask_size + 4.0;
+  const Window window = intersect(window_round(start, margin), frame);
+  if (window.empty() || window.width < 8 || window.height < 8)
+    return lost(FeatureStatus::not_found);
+  canvas.require(window);
+  // vpMeEllipse reads where it likes: it gets a copy of the window and nothing else.
+  crop_.resize(static_cast<unsigned>(window.height), static_cast<unsigned>(window.width));
+  for (int v = 0; v < window.height; ++v)
+    std::copy_n(canvas.image()[static_cast<unsigned>(window.v + v)] + window.u, window.width,
+                crop_[static_cast<unsigned>(v)]);
+  const Eigen::Vector2d origin(window.u, window.v);
+  EllipseShape local = start;
+  local.centre -= origin;
+  auto measured = measure(crop_, local);
+  if (!measured) return lost(FeatureStatus::not_found);
+  const double contrast = contrast_of(crop_, measured->ellipse);
+  measured->ellipse.u += origin.x();
+  measured->ellipse.v += origin.y();
+
+  const EllipseShape shape = shape_of(measured->ellipse);
+  const Eigen::Vector2d half = half_extent(shape);
+  if (shape.centre.x() - half.x() < 1.0 || shape.centre.y() - half.y() < 1.0 ||
+      shape.centre.x() + half.x() > frame.width - 2 ||
+      shape.centre.y() + half.y() > frame.height - 2)
+    return lost(FeatureStatus::cut_by_border);
+  const double growth = 0.25 * std::log(shape.sigma.determinant() / expected.sigma.determinant());
+  if (std::abs(growth) > parameters_.max_scale_step ||
+      (shape.centre - expected.centre).norm() > 2.0 * parameters_.range_px)
+    return lost(FeatureStatus::wrong_object);
+  if (std::abs(contrast) < parameters_.finder.min_contrast)
+    return lost(FeatureStatus::low_contrast);
+  if (measured->held < parameters_.min_good_sites) return lost(FeatureStatus::occluded);
+  tracking_ = true;
+  shape_ = shape;
+  motion_.setZero();
+  return feature_of(*measured, contrast);
+}
+
+MovingEdgeTracker::MovingEdgeTracker(const MovingEdgeTrackerParameters& parameters)
+    : state_(std::make_unique<State>(parameters)) {}
+MovingEdgeTracker::~MovingEdgeTracker() = default;
+
+EllipseFeature MovingEdgeTracker::acquire(Canvas& canvas, const EllipsePrediction& prediction) {
+  const EllipseFeature seed = state_->seeds_.acquire(canvas, prediction);
+  if (seed.status != FeatureStatus::found) return seed;
+  const EllipseShape shape = shape_of(seed.ellipse);
+  return state_->follow(canvas, shape, shape);
+}
+
+EllipseFeature MovingEdgeTracker::track(Canvas& canvas) {
+  if (!state_->tracking_) return lost(FeatureStatus::not_found);
+  EllipseShape predicted = state_->shape_;
+  predicted.centre += state_->motion_;
+  return state_->follow(canvas, predicted, predicted);
+}
+
+std::vector<EllipseFeature> MovingEdgeTracker::find_all(Canvas& canvas) {
+  std::vector<EllipseFeature> features;
+  for (const EllipseFeature& seed : state_->seeds_.find_all(canvas)) {
+    const EllipseShape shape = shape_of(seed.ellipse);
+    const EllipseFeature feature = state_->follow(canvas, shape, shape);
+    if (feature.status == FeatureStatus::found) features.push_back(feature);
+  }
+  return features;
+}
+
+void MovingEdgeTracker::start(Canvas& /*canvas*/, const Ellipse& ellipse) {
+  state_->shape_ = shape_of(ellipse);
+  state_->motion_.setZero();
+  state_->tracking_ = true;
+}
+
+void MovingEdgeTracker::expect_motion(const Eigen::Vector2d& shift) {
+  state_->motion_ += shift;
+}
+
+}  // namespace vigia::tracking
