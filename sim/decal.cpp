@@ -1,8 +1,11 @@
 #include "decal.hpp"
 
 #include "disc_coverage.hpp"
+#include "rays.hpp"
+#include "simd.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/LU>
@@ -22,7 +25,7 @@ double outline_radius(DecalShape shape) {
     case DecalShape::square:
       return std::sqrt(2.0);
     case DecalShape::blob:
-      return 1.35;
+      return std::sqrt(1.8);
     default:
       return 1.0;
   }
@@ -40,14 +43,13 @@ bool may_be_seen(const Eigen::Vector3d& centre_c, double radius, const Intrinsic
 }
 
 /// Whole pixels round the image of the circle of radius @p radius, or an empty window.
-Window outline_box(const Eigen::Isometry3d& cMd, double radius, const Intrinsics& k) {
-  constexpr int kSamples = 32;
+Window outline_box(const Eigen::Isometry3d& cMd, double radius, const Intrinsics& k, int samples) {
   double u0 = 1e9;
   double v0 = 1e9;
   double u1 = -1e9;
   double v1 = -1e9;
-  for (int i = 0; i < kSamples; ++i) {
-    const double angle = 2.0 * kPi * i / kSamples;
+  for (int i = 0; i < samples; ++i) {
+    const double angle = 2.0 * kPi * i / samples;
     const auto uv =
         project(k, cMd * Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), 0.0));
     if (!uv) return {};
@@ -57,9 +59,10 @@ Window outline_box(const Eigen::Isometry3d& cMd, double radius, const Intrinsics
     v1 = std::max(v1, uv->y());
   }
   if (u1 < -1e5 || v1 < -1e5 || u0 > 1e5 || v0 > 1e5 || u1 - u0 > 1e5 || v1 - v0 > 1e5) return {};
-  // The arc between two samples bulges by less than 1 % of the width.
-  const double bulge_u = 1.0 + 0.02 * (u1 - u0);
-  const double bulge_v = 1.0 + 0.02 * (v1 - v0);
+  // The arc between two samples bulges by (1 − cos(π/n))/2 of the width, doubled for perspective.
+  const double share = 1.0 - std::cos(kPi / samples);
+  const double bulge_u = 1.0 + share * (u1 - u0);
+  const double bulge_v = 1.0 + share * (v1 - v0);
   const Window box{static_cast<int>(std::floor(u0 - bulge_u)),
                    static_cast<int>(std::floor(v0 - bulge_v)), 0, 0};
   return {box.u, box.v, static_cast<int>(std::ceil(u1 + bulge_u)) + 1 - box.u,
@@ -70,45 +73,113 @@ Window grown(const Window& w, int margin) {
   return {w.u - margin, w.v - margin, w.width + 2 * margin, w.height + 2 * margin};
 }
 
-struct Implicit {
-  double value;  ///< positive inside, about 1 in the middle
-  double dx;
-  double dy;
+/// Share of grey of a mark at a point of its plane, in units of size_m.
+struct Footprint {
+  std::array<float, 9> H;    ///< ray → plane
+  float x_u, x_v, y_u, y_v;  ///< how the point moves with the pixel, at the mark's centre
 };
 
-Implicit ellipse(double x, double y, double b) {
-  return {1.0 - x * x - y * y / (b * b), -2.0 * x, -2.0 * y / (b * b)};
+struct Implicit {
+  float value;  ///< positive inside, about 1 in the middle
+  float dx;
+  float dy;
+};
+
+inline Implicit ellipse(float x, float y, float per_b2) {
+  return {1.0F - x * x - y * y * per_b2, -2.0F * x, -2.0F * y * per_b2};
 }
 
-Implicit lesser(const Implicit& f, const Implicit& g) {
-  return f.value < g.value ? f : g;
+inline Implicit lesser(const Implicit& f, const Implicit& g) {
+  const bool first = f.value < g.value;
+  return {first ? f.value : g.value, first ? f.dx : g.dx, first ? f.dy : g.dy};
 }
 
 /// The clutter's shapes in their own plane, where they fill about the unit circle.
-Implicit clutter_shape(DecalShape shape, double x, double y) {
-  switch (shape) {
-    case DecalShape::ellipse:
-      return ellipse(x, y, 0.5);
-    case DecalShape::ring: {
-      const Implicit inner = ellipse(x / 0.55, y / 0.55, 1.0);
-      return lesser(ellipse(x, y, 1.0), {-inner.value, -inner.dx / 0.55, -inner.dy / 0.55});
-    }
-    case DecalShape::square:
-      return lesser({1.0 - std::abs(x), x > 0.0 ? -1.0 : 1.0, 0.0},
-                    {1.0 - std::abs(y), 0.0, y > 0.0 ? -1.0 : 1.0});
-    case DecalShape::half_disc:
-      return lesser(ellipse(x, y, 1.0), {y, 0.0, 1.0});
-    default: {
-      // A circle pressed to three lobes and stretched.
-      const double r2 = x * x + y * y;
-      return {1.0 - r2 - 0.22 * (x * x - y * y) - 0.30 * (x * x * x - 3.0 * x * y * y),
-              -2.0 * x - 0.44 * x - 0.90 * (x * x - y * y), -2.0 * y + 0.44 * y + 1.80 * x * y};
-    }
+struct EllipseShape {
+  static Implicit at(float x, float y) { return ellipse(x, y, 4.0F); }
+};
+struct RingShape {
+  static Implicit at(float x, float y) {
+    const Implicit outer = ellipse(x, y, 1.0F);
+    return lesser(outer, {x * x + y * y - 0.35F, 2.0F * x, 2.0F * y});
+  }
+};
+struct SquareShape {
+  static Implicit at(float x, float y) {
+    const float ax = x > 0.0F ? x : -x;
+    const float ay = y > 0.0F ? y : -y;
+    return lesser({1.0F - ax, 1.0F, 0.0F}, {1.0F - ay, 0.0F, 1.0F});
+  }
+};
+struct HalfDiscShape {
+  static Implicit at(float x, float y) { return lesser(ellipse(x, y, 1.0F), {y, 0.0F, 1.0F}); }
+};
+struct BlobShape {
+  /// A circle stretched and pressed to three lobes; cut where the cubic would open again.
+  static Implicit at(float x, float y) {
+    const Implicit lobes{
+        1.0F - 1.22F * x * x - 0.78F * y * y - 0.20F * (x * x * x - 3.0F * x * y * y),
+        -2.44F * x - 0.60F * (x * x - y * y), -1.56F * y + 1.20F * x * y};
+    return lesser(lobes, {1.8F - x * x - y * y, -2.0F * x, -2.0F * y});
+  }
+};
+
+template <typename Shape>
+inline void shape_row(const Footprint& k, const float* __restrict rx, const float* __restrict ry,
+                      int count, float* __restrict out) {
+  const Footprint f = k;
+  for (int i = 0; i < count; ++i) {
+    const float w = 1.0F / (f.H[6] * rx[i] + f.H[7] * ry[i] + f.H[8]);
+    const float x = (f.H[0] * rx[i] + f.H[1] * ry[i] + f.H[2]) * w;
+    const float y = (f.H[3] * rx[i] + f.H[4] * ry[i] + f.H[5]) * w;
+    const Implicit shape = Shape::at(x, y);
+    const float slope_u = shape.dx * f.x_u + shape.dy * f.y_u;
+    const float slope_v = shape.dx * f.x_v + shape.dy * f.y_v;
+    const float slope = std::sqrt(slope_u * slope_u + slope_v * slope_v + 1e-12F);
+    // The edge is spread over two pixels.
+    const float share = 0.5F + 0.5F * shape.value / slope;
+    out[i] = share < 0.0F ? 0.0F : (share > 1.0F ? 1.0F : share);
   }
 }
 
-float clamp_unit(double share) {
-  return static_cast<float>(std::clamp(share, 0.0, 1.0));
+void clutter_row(DecalShape shape, const Footprint& k, const float* x, const float* y, int count,
+                 float* out) {
+  switch (shape) {
+    case DecalShape::ellipse:
+      return shape_row<EllipseShape>(k, x, y, count, out);
+    case DecalShape::ring:
+      return shape_row<RingShape>(k, x, y, count, out);
+    case DecalShape::square:
+      return shape_row<SquareShape>(k, x, y, count, out);
+    case DecalShape::half_disc:
+      return shape_row<HalfDiscShape>(k, x, y, count, out);
+    default:
+      return shape_row<BlobShape>(k, x, y, count, out);
+  }
+}
+
+/// Share of pixels in the square |x|, |y| ≤ 1, from the distances to its sides in pixels.
+VIGIA_PIXEL_LOOP
+void square_row(const std::array<float, 9>& H, float px_per_x, float px_per_y,
+                const float* __restrict rx, const float* __restrict ry, int count,
+                float* __restrict out) {
+  const std::array<float, 9> h = H;
+  for (int i = 0; i < count; ++i) {
+    const float w = 1.0F / (h[6] * rx[i] + h[7] * ry[i] + h[8]);
+    const float x = (h[0] * rx[i] + h[1] * ry[i] + h[2]) * w;
+    const float y = (h[3] * rx[i] + h[4] * ry[i] + h[5]) * w;
+    float across = 0.5F + (1.0F - std::abs(x)) * px_per_x;
+    float down = 0.5F + (1.0F - std::abs(y)) * px_per_y;
+    across = across < 0.0F ? 0.0F : (across > 1.0F ? 1.0F : across);
+    down = down < 0.0F ? 0.0F : (down > 1.0F ? 1.0F : down);
+    out[i] = across * down;
+  }
+}
+
+std::array<float, 9> single(const Eigen::Matrix3d& H) {
+  std::array<float, 9> h{};
+  for (int i = 0; i < 9; ++i) h[static_cast<std::size_t>(i)] = static_cast<float>(H(i / 3, i % 3));
+  return h;
 }
 
 }  // namespace
@@ -124,7 +195,8 @@ DecalView::DecalView(const Decal& decal, const Eigen::Isometry3d& cMw, const Int
 
   const Window frame{0, 0, intrinsics.width, intrinsics.height};
   const int margin = decal.blurred ? blur_margin(blur_px) : 1;
-  box_ = intersect(grown(outline_box(cMd, radius, intrinsics), margin), frame);
+  box_ =
+      intersect(grown(outline_box(cMd, radius, intrinsics, decal.blurred ? 32 : 8), margin), frame);
   if (box_.empty()) return;
 
   Eigen::Matrix3d cHd;
@@ -137,22 +209,18 @@ DecalView::DecalView(const Decal& decal, const Eigen::Isometry3d& cMw, const Int
     dxy_duv_ = dd_dxy * distort_jacobian(intrinsics, *uv).inverse();
 }
 
-void DecalView::coverage(int u, int v, int count, float* out) {
-  if (decal_->blurred) {
-    if (blurred_.empty()) compute_blurred();
-    const int margin = blur_margin(blur_px_);
-    const std::ptrdiff_t stride = box_.width + 2 * margin;
-    const float* row = blurred_.data() + (v - box_.v + margin) * stride + (u - box_.u + margin);
-    std::copy_n(row, count, out);
+void DecalView::coverage(int u, int v, int count, const float* x, const float* y, float* out) {
+  if (!decal_->blurred) {
+    const Footprint footprint{
+        single(dHray_), static_cast<float>(dxy_duv_(0, 0)), static_cast<float>(dxy_duv_(0, 1)),
+        static_cast<float>(dxy_duv_(1, 0)), static_cast<float>(dxy_duv_(1, 1))};
+    clutter_row(decal_->shape, footprint, x, y, count, out);
     return;
   }
-  for (int i = 0; i < count; ++i) {
-    const Eigen::Vector3d p = dHray_ * unproject(*intrinsics_, {u + i, v}).homogeneous();
-    const Implicit f = clutter_shape(decal_->shape, p.x() / p.z(), p.y() / p.z());
-    const double slope_u = f.dx * dxy_duv_(0, 0) + f.dy * dxy_duv_(1, 0);
-    const double slope_v = f.dx * dxy_duv_(0, 1) + f.dy * dxy_duv_(1, 1);
-    out[i] = clamp_unit(0.5 + 0.5 * f.value / (std::hypot(slope_u, slope_v) + 1e-9));
-  }
+  if (blurred_.empty()) compute_blurred();
+  const int margin = blur_margin(blur_px_);
+  const std::ptrdiff_t stride = box_.width + 2 * margin;
+  std::copy_n(blurred_.data() + (v - box_.v + margin) * stride + (u - box_.u + margin), count, out);
 }
 
 void DecalView::compute_blurred() {
@@ -166,20 +234,25 @@ void DecalView::compute_blurred() {
     const double b = 1.0 / size.singularValues()(0);
     blurred_ = conic_coverage(Q, *intrinsics_, window, b * b / a);
   } else {
-    blurred_.reserve(static_cast<std::size_t>(window.width) *
-                     static_cast<std::size_t>(window.height));
-    const double per_u = std::hypot(dxy_duv_(0, 0), dxy_duv_(0, 1));
-    const double per_v = std::hypot(dxy_duv_(1, 0), dxy_duv_(1, 1));
-    for (int v = window.v; v < window.bottom(); ++v) {
-      for (int u = window.u; u < window.right(); ++u) {
-        const Eigen::Vector3d p = dHray_ * unproject(*intrinsics_, {u, v}).homogeneous();
-        const float x = clamp_unit(0.5 + (1.0 - std::abs(p.x() / p.z())) / per_u);
-        const float y = clamp_unit(0.5 + (1.0 - std::abs(p.y() / p.z())) / per_v);
-        blurred_.push_back(x * y);
-      }
-    }
+    blurred_ = square_coverage(window);
   }
   blur(blurred_, window, blur_px_);
+}
+
+std::vector<float> DecalView::square_coverage(const Window& window) const {
+  const auto width = static_cast<std::size_t>(window.width);
+  std::vector<float> coverage(width * static_cast<std::size_t>(window.height));
+  std::vector<float> x(width);
+  std::vector<float> y(width);
+  const auto px_per_x = static_cast<float>(1.0 / dxy_duv_.row(0).norm());
+  const auto px_per_y = static_cast<float>(1.0 / dxy_duv_.row(1).norm());
+  const std::array<float, 9> H = single(dHray_);
+  float* out = coverage.data();
+  for (int v = window.v; v < window.bottom(); ++v, out += width) {
+    row_rays(*intrinsics_, window.u, v, window.width, x.data(), y.data());
+    square_row(H, px_per_x, px_per_y, x.data(), y.data(), window.width, out);
+  }
+  return coverage;
 }
 
 }  // namespace vigia::sim

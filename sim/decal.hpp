@@ -34,12 +34,14 @@ class DecalView {
   const imaging::Window& box() const { return box_; }
   const Decal& decal() const { return *decal_; }
 
-  /// Coverage of @p count pixels of row @p v from @p u on, which lie in the box. Landmarks are
-  /// computed as a whole the first time, so that a pixel never depends on the window.
-  void coverage(int u, int v, int count, float* out);
+  /// Coverage of @p count pixels of row @p v from @p u on, which lie in the box and whose rays are
+  /// (x, y, 1). Landmarks are computed as a whole the first time, so that a pixel never depends on
+  /// the window.
+  void coverage(int u, int v, int count, const float* x, const float* y, float* out);
 
  private:
   void compute_blurred();
+  std::vector<float> square_coverage(const imaging::Window& window) const;
 
   const Decal* decal_;
   const Intrinsics* intrinsics_;

@@ -115,19 +115,8 @@ void Robot::begin_look() {
 }
 
 OdometryIncrement Robot::read_odometry() {
-  const Pose2 moved = compose(inverse(odometry_pose_), truth_.pose);
-  OdometryIncrement u{odometry_stamp_, truth_.stamp, 0.0, 0.0, 0.0};
-  const double chord = std::hypot(moved.x, moved.y);
-  if (chord > 1e-9) {
-    const double bearing = std::atan2(moved.y, moved.x);
-    const bool backward = std::cos(bearing - 0.5 * turned_) < 0.0;
-    u.trans = backward ? -chord : chord;
-    u.rot1 = backward ? wrap_angle(bearing + kPi) : bearing;
-  } else {
-    u.rot1 = 0.5 * turned_;
-  }
-  u.rot2 = turned_ - u.rot1;
-
+  OdometryIncrement u = chord_increment(odometry_pose_, truth_.pose, turned_, odometry_stamp_,
+                                        truth_.stamp);
   const Eigen::Matrix3d covariance = control_covariance(u, params_.odometry);
   u.rot1 += std::sqrt(covariance(0, 0)) * odometry_random_.normal();
   u.trans += std::sqrt(covariance(1, 1)) * odometry_random_.normal();

@@ -2,6 +2,7 @@
 
 #include "decal.hpp"
 #include "pixel_noise.hpp"
+#include "rays.hpp"
 #include "simd.hpp"
 #include "surface.hpp"
 #include "texture.hpp"
@@ -65,17 +66,6 @@ Eigen::Isometry3d frame_of(const Clutter& clutter) {
                               ? Eigen::Isometry3d(Eigen::Translation3d(clutter.centre_w))
                               : wall_mount(clutter.centre_w, clutter.normal_yaw);
   return wMd * Eigen::AngleAxisd(clutter.turn, Eigen::Vector3d::UnitZ());
-}
-
-VIGIA_PIXEL_LOOP
-void row_rays(float x0, float dx, float y, float kdu, int u, int count, float* __restrict out_x,
-              float* __restrict out_y) {
-  for (int i = 0; i < count; ++i) {
-    const float x = x0 + static_cast<float>(u + i) * dx;
-    const float scale = 1.0F + kdu * (x * x + y * y);
-    out_x[i] = x * scale;
-    out_y[i] = y * scale;
-  }
 }
 
 VIGIA_PIXEL_LOOP
@@ -271,10 +261,7 @@ class SceneFrame : public imaging::Frame {
   }
 
   void paint_surfaces(int u, int v, int count, const std::vector<Run>& runs, Row& row) const {
-    row_rays(static_cast<float>(-intrinsics_.u0 / intrinsics_.px),
-             static_cast<float>(1.0 / intrinsics_.px),
-             static_cast<float>((v - intrinsics_.v0) / intrinsics_.py),
-             static_cast<float>(intrinsics_.kdu), u, count, row.x.data(), row.y.data());
+    row_rays(intrinsics_, u, v, count, row.x.data(), row.y.data());
     for (const Run& run : runs) {
       const int first = run.u0 - u;
       const int length = run.u1 - run.u0;
@@ -319,7 +306,7 @@ class SceneFrame : public imaging::Frame {
       if (n <= 0) continue;
       const int at = from - u;
       const auto id = static_cast<ViewId>(view_of_surface_[decal.decal().surface]);
-      decal.coverage(from, v, n, row.other.data() + at);
+      decal.coverage(from, v, n, row.x.data() + at, row.y.data() + at, row.other.data() + at);
       keep_where(row.winner.data() + at, id, n, row.other.data() + at);
       mix(row.other.data() + at, decal.decal().grey, n, grey + at);
     }

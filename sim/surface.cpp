@@ -228,9 +228,10 @@ RayBox ray_box(const Intrinsics& intrinsics, int u0, int u1, int v0, int v1) {
   };
   const double r2_low = nearest_square(x0, x1) + nearest_square(y0, y1);
   const double r2_high = std::max(x0 * x0, x1 * x1) + std::max(y0 * y0, y1 * y1);
-  const auto [scale_low, scale_high] =
-      std::minmax(1.0 + intrinsics.kdu * r2_low, 1.0 + intrinsics.kdu * r2_high);
-  const auto stretch = [low = scale_low, high = scale_high](double a, double b) {
+  const double scale_a = 1.0 + intrinsics.kdu * r2_low;
+  const double scale_b = 1.0 + intrinsics.kdu * r2_high;
+  const auto stretch = [low = std::min(scale_a, scale_b), high = std::max(scale_a, scale_b)](
+                           double a, double b) {
     return std::pair{std::min(a * low, a * high), std::max(b * low, b * high)};
   };
   const auto [left, right] = stretch(x0, x1);

@@ -114,7 +114,7 @@ Material wall_material(double grey, double contrast, double height_m, std::uint6
     return contrast * (-15.0 * band(s, 0.60, 0.612) + 7.0 * band(s, 0.612, 0.63));
   });
   RandomStream random(seed, "tint");
-  wall.tint = tint(random.uniform(1.0, 1.1), random.uniform(0.8, 0.95));
+  wall.tint = tint(random.uniform(1.06, 1.10), random.uniform(0.80, 0.90));
   return wall;
 }
 
