@@ -21,21 +21,6 @@ struct LocalizerSums {
   LocalizerScore score;
 };
 
-/// The displacement from one true pose to another as odometry would report it without error.
-OdometryIncrement true_increment(const Pose2& from, const Pose2& to,
-                                 const OdometryIncrement& measured) {
-  OdometryIncrement u = measured;
-  const Pose2 d = compose(inverse(from), to);
-  u.trans = std::hypot(d.x, d.y);
-  // Backwards motion keeps the measured sign, so that rot1 stays small.
-  if (measured.trans < 0.0) u.trans = -u.trans;
-  u.rot1 = u.trans == 0.0 ? 0.5 * d.theta
-                          : std::atan2(d.y * (u.trans < 0.0 ? -1.0 : 1.0),
-                                       d.x * (u.trans < 0.0 ? -1.0 : 1.0));
-  u.rot2 = wrap_angle(d.theta - u.rot1);
-  return u;
-}
-
 int& count_of(LocalizerScore& score, localization::UpdateStatus status) {
   switch (status) {
     case localization::UpdateStatus::fused:
@@ -93,7 +78,9 @@ void DriveScorer::Impl::score_localizer(const mission::Tick& tick, std::size_t i
   LocalizerSums& sum = sums[i];
   const Belief& belief = *tick.localizers[i].belief;
   const auto& update = tick.localizers[i].update;
-  const auto u = true_increment(tick.true_pose_before, tick.truth.pose, tick.odometry);
+  const double turned = wrap_angle(tick.truth.pose.theta - tick.true_pose_before.theta);
+  const auto u = chord_increment(tick.true_pose_before, tick.truth.pose, turned,
+                                 tick.odometry.from, tick.odometry.to);
   sum.bound.predict(tick.true_pose_before, u,
                     control_covariance(u, setup->robot.robot.odometry));
   const bool fused = update && update->status == localization::UpdateStatus::fused;

@@ -145,8 +145,6 @@ TEST(EkfConsistency, TakingTheErrorOfALookForWhiteNoiseMakesTheFilterOverConfide
   const Campaign campaign = run_campaign(noise, naive);
   EXPECT_GT(campaign.consistency.mean_per_dof, 2.0);
   EXPECT_LT(campaign.consistency.inside_band, 0.1);
-  std::printf("naive %.2f %.2f %.2f\n", campaign.consistency.mean_per_dof,
-              campaign.consistency.inside_band, campaign.ratio.value);
 }
 
 }  // namespace
