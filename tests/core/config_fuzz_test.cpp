@@ -10,7 +10,9 @@
 
 #include "vigia/core/random.hpp"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+// The functions of tests/fuzz, which abort when more than an InputError comes of a text.
+extern "C" int fuzz_config(const std::uint8_t* data, std::size_t size);
+extern "C" int fuzz_world(const std::uint8_t* data, std::size_t size);
 
 namespace vigia {
 namespace {
@@ -29,7 +31,9 @@ std::vector<std::string> read_corpus() {
 }
 
 void run(const std::string& text) {
-  LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+  const auto* data = reinterpret_cast<const std::uint8_t*>(text.data());
+  fuzz_config(data, text.size());
+  fuzz_world(data, text.size());
 }
 
 /// One edit of the kinds that break a reader: a byte of YAML's grammar, a cut, a copy, a splice.
