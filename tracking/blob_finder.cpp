@@ -60,8 +60,9 @@ void BlobFinder::scan_row(int v) {
     rising[u] = rise >= threshold ? 1 : 0;
   }
 
-  int first_fall = -1;
-  int last_fall = -1;
+  // What begins or ends beyond the window's side counts as cut there.
+  int first_fall = 0;
+  int last_fall = 0;
   for (int u = 0; u < count;) {
     std::uint64_t falls = 0;
     std::uint64_t rises = 0;
@@ -89,6 +90,7 @@ void BlobFinder::scan_row(int v) {
       ++u;
     }
   }
+  if (last_fall > 0) consider({v, window_.u + last_fall, window_.right() - 1});
 }
 
 void BlobFinder::consider(const Chord& chord) {
@@ -122,7 +124,13 @@ bool BlobFinder::make_seed(const Chord& chord, Seed& seed) const {
   seed.disc = median_of_five(samples);
   const int left = std::max(window_.u, chord.first - kGroundDistance);
   const int right = std::min(window_.right() - 1, chord.last + kGroundDistance);
-  seed.ground = std::min(at(left, v), at(right, v));
+  if (chord.first == window_.u && chord.last == window_.right() - 1) return false;
+  if (chord.first == window_.u)
+    seed.ground = at(right, v);
+  else if (chord.last == window_.right() - 1)
+    seed.ground = at(left, v);
+  else
+    seed.ground = std::min(at(left, v), at(right, v));
   if (seed.ground - seed.disc < parameters_.min_contrast) return false;
   seed.threshold = static_cast<int>(0.5 * (seed.disc + seed.ground));
   seed.u = u;
@@ -250,7 +258,19 @@ void BlobFinder::fill(const Seed& seed) {
   for (const auto& [first, last] : span) spanned += last - first + 1;
   blob.solidity = blob.area / spanned;
   blob.outline = outline_distance(blob.ellipse);
+  if (blob.cut) blob.arc = visible_arc();
   blobs_.push_back(blob);
+}
+
+// The runs' ends that are not the window's sides; above and below, the outline is cut anyway.
+std::vector<Eigen::Vector2d> BlobFinder::visible_arc() const {
+  std::vector<Eigen::Vector2d> arc;
+  for (const Run& run : runs_) {
+    if (run.v <= window_.v || run.v >= window_.bottom() - 1) continue;
+    if (run.first > window_.u) arc.emplace_back(run.first - 0.5, run.v);
+    if (run.last < window_.right() - 1) arc.emplace_back(run.last + 0.5, run.v);
+  }
+  return arc;
 }
 
 // First-order distance of the outer pixel edges of the runs to the ellipse, rms.

@@ -14,14 +14,15 @@ namespace vigia::tracking {
 /// A connected dark region and its moments.
 struct Blob {
   imaging::Window box;
-  double area = 0.0;      ///< px
-  EllipseShape ellipse;   ///< the ellipse of the same second moments
-  double fill = 0.0;      ///< area over that ellipse's area; 1 for a solid ellipse
-  double solidity = 0.0;  ///< area over the area between each row's first and last pixel
-  double outline = 0.0;   ///< rms distance of the runs' ends from the ellipse, px
-  double disc = 0.0;      ///< grey level inside, near the seed
-  double ground = 0.0;    ///< grey level beside it, near the seed
-  bool cut = false;       ///< reaches the window's edge
+  double area = 0.0;                 ///< px
+  EllipseShape ellipse;              ///< the ellipse of the same second moments
+  double fill = 0.0;                 ///< area over that ellipse's area; 1 for a solid ellipse
+  double solidity = 0.0;             ///< area over the area between each row's first and last pixel
+  double outline = 0.0;              ///< rms distance of the runs' ends from the ellipse, px
+  double disc = 0.0;                 ///< grey level inside, near the seed
+  double ground = 0.0;               ///< grey level beside it, near the seed
+  bool cut = false;                  ///< reaches the window's edge
+  std::vector<Eigen::Vector2d> arc;  ///< of a cut blob: points of the outline that is seen
 };
 
 struct BlobFinderParameters {
@@ -72,6 +73,7 @@ class BlobFinder {
   int reach(int u, int v, int du, int dv, int threshold, int limit) const;
   void fill(const Seed& seed);
   bool add_run(int u, int v, const Seed& seed);
+  std::vector<Eigen::Vector2d> visible_arc() const;
   double outline_distance(const EllipseShape& ellipse) const;
 
   BlobFinderParameters parameters_;

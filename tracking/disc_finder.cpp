@@ -42,7 +42,8 @@ EllipseFeature feature_of(const EdgeFit& fit, FeatureStatus status) {
   feature.ellipse = estimate.ellipse;
   feature.covariance = estimate.covariance;
   feature.contrast = fit.profile.ground - fit.profile.disc;
-  feature.score = fit.raggedness;
+  // 1 for a clean outline, less for sectors that disagree and for raggedness.
+  feature.score = fit.agreement / (1.0 + fit.raggedness);
   return feature;
 }
 
@@ -72,7 +73,9 @@ void DiscFinder::find_dark(const vpImage<unsigned char>& image, const imaging::W
   blobs_.set_min_axis_ratio(min_axis_ratio);
   for (const Blob& blob : blobs_.find(image, window)) {
     const bool known = std::any_of(out.begin(), out.end(), [&](const DiscCandidate& other) {
-      return other.status == FeatureStatus::found && near(blob.ellipse, other.fit.shape);
+      return other.status == FeatureStatus::found
+                 ? near(blob.ellipse, other.fit.shape)
+                 : other.blob.cut && blob.cut && near(blob.ellipse, other.blob.ellipse);
     });
     if (known) continue;
     DiscCandidate candidate;

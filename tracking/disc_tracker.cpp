@@ -208,7 +208,10 @@ std::optional<EllipseShape> DiscTracker::State::follow_dot(const vpImage<unsigne
   // vpDot2's axes are half a pixel short: take its centre, and of its size only the change.
   const double ratio = (size_of(*dot) + 0.5) / size_of(predicted);
   if (std::abs(std::log(ratio)) > parameters_.max_scale_step) return std::nullopt;
-  return EllipseShape{dot->centre, predicted.sigma * (ratio * ratio)};
+  // Below this, its change is its own raggedness.
+  constexpr double kRagged = 0.03;
+  const double growth = std::abs(std::log(ratio)) > kRagged ? ratio * ratio : 1.0;
+  return EllipseShape{dot->centre, predicted.sigma * growth};
 }
 
 EllipseFeature DiscTracker::State::track(Canvas& canvas) {

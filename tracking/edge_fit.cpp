@@ -263,7 +263,7 @@ bool EdgeFitter::step() {
 
 // Steps until the ellipse has all but come to rest, with the model evaluated there.
 bool EdgeFitter::iterate(const vpImage<unsigned char>& image, const imaging::Window& bounds) {
-  constexpr double kRest = 0.05;  // px: what is left then is a few hundredths of it
+  constexpr double kRest = 0.1;  // px: what is left then is a few hundredths of it
   for (int iteration = 0; iteration < parameters_.max_iterations; ++iteration) {
     const EllipseShape before = shape_;
     accumulate();

@@ -1,12 +1,13 @@
 #include "vigia/tracking/moving_edge_tracker.hpp"
 
-#include "ellipse_shape.hpp"
+#include "disc_finder.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include <Eigen/LU>
+#include <opencv2/imgproc.hpp>
 #include <visp3/core/vpException.h>
 #include <visp3/me/vpMeEllipse.h>
 
@@ -24,6 +25,14 @@ class EdgeSites : public vpMeEllipse {
   unsigned good_sites() const { return m_numberOfGoodPoints; }
   unsigned expected_sites() const { return m_expectedDensity; }
 };
+
+// The point at parameter t of the ellipse with both axes grown by @p growth.
+Eigen::Vector2d outline_point(const Ellipse& ellipse, double t, double growth) {
+  const double x = (ellipse.a + growth) * std::cos(t);
+  const double y = (ellipse.b + growth) * std::sin(t);
+  return {ellipse.u + x * std::cos(ellipse.psi) - y * std::sin(ellipse.psi),
+          ellipse.v + x * std::sin(ellipse.psi) + y * std::cos(ellipse.psi)};
+}
 
 struct EdgeMeasurement {
   Ellipse ellipse;
@@ -56,19 +65,59 @@ double scatter_of(EdgeSites& sites, const EllipseShape& shape) {
   return count > 0 ? std::sqrt(sum / count) : 0.0;
 }
 
+// The share of the outline that lies inside the frame, a pixel from its edge.
+double visible_share(const Ellipse& ellipse, const Window& frame) {
+  constexpr int kSamples = 128;
+  int inside = 0;
+  for (int k = 0; k < kSamples; ++k) {
+    const Eigen::Vector2d p = outline_point(ellipse, 2.0 * kPi * k / kSamples, 0.0);
+    inside += p.x() >= 1.0 && p.y() >= 1.0 && p.x() <= frame.width - 2 && p.y() <= frame.height - 2
+                  ? 1
+                  : 0;
+  }
+  return static_cast<double>(inside) / kSamples;
+}
+
+// The ellipse through the visible outline of a blob that the border cuts.
+std::optional<EllipseShape> arc_ellipse(const Blob& blob) {
+  constexpr std::size_t kLeast = 30;
+  if (blob.arc.size() < kLeast) return std::nullopt;
+  std::vector<cv::Point2f> points;
+  points.reserve(blob.arc.size());
+  for (const Eigen::Vector2d& p : blob.arc)
+    points.emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()));
+  const cv::RotatedRect rectangle = cv::fitEllipseDirect(points);
+  const Ellipse ellipse{static_cast<double>(rectangle.center.x),
+                        static_cast<double>(rectangle.center.y),
+                        0.5 * static_cast<double>(rectangle.size.width),
+                        0.5 * static_cast<double>(rectangle.size.height),
+                        from_deg(static_cast<double>(rectangle.angle))};
+  const EllipseShape shape = shape_of(ellipse);
+  if (!shape.sigma.allFinite() || !(shape.sigma.determinant() > 0.0)) return std::nullopt;
+  const Eigen::Matrix2d inverse = shape.sigma.inverse();
+  double squares = 0.0;
+  for (const Eigen::Vector2d& point : blob.arc) {
+    const Eigen::Vector2d p = point - shape.centre;
+    const Eigen::Vector2d gradient = inverse * p;
+    const double level = std::sqrt(p.dot(gradient));
+    const double d = (1.0 - level) * level / std::max(gradient.norm(), 1e-9);
+    squares += d * d;
+  }
+  constexpr double kRagged = 0.7;  // px rms; whole pixels alone make 0.3
+  if (std::sqrt(squares / static_cast<double>(blob.arc.size())) > kRagged) return std::nullopt;
+  return shape;
+}
+
 // Mean grey level inside less that outside, on two ellipses beside the outline.
 double contrast_of(const vpImage<unsigned char>& image, const Ellipse& ellipse) {
   constexpr int kSamples = 24;
   const auto level = [&](double growth) {
     double sum = 0.0;
     for (int k = 0; k < kSamples; ++k) {
-      const double t = 2.0 * kPi * k / kSamples;
-      const double x = (ellipse.a + growth) * std::cos(t);
-      const double y = (ellipse.b + growth) * std::sin(t);
-      const double u = ellipse.u + x * std::cos(ellipse.psi) - y * std::sin(ellipse.psi);
-      const double v = ellipse.v + x * std::sin(ellipse.psi) + y * std::cos(ellipse.psi);
-      const long row = std::clamp(std::lround(v), 0L, static_cast<long>(image.getHeight()) - 1);
-      const long column = std::clamp(std::lround(u), 0L, static_cast<long>(image.getWidth()) - 1);
+      const Eigen::Vector2d p = outline_point(ellipse, 2.0 * kPi * k / kSamples, growth);
+      const long row = std::clamp(std::lround(p.y()), 0L, static_cast<long>(image.getHeight()) - 1);
+      const long column =
+          std::clamp(std::lround(p.x()), 0L, static_cast<long>(image.getWidth()) - 1);
       sum += image[static_cast<unsigned>(row)][column];
     }
     return sum / kSamples;
@@ -81,7 +130,7 @@ double contrast_of(const vpImage<unsigned char>& image, const Ellipse& ellipse) 
 class MovingEdgeTracker::State {
  public:
   explicit State(const MovingEdgeTrackerParameters& parameters)
-      : parameters_(parameters), seeds_(parameters.finder) {
+      : parameters_(parameters), seeds_(parameters.finder), finder_(parameters.finder) {
     edges_.setRange(parameters.range_px);
     edges_.setSampleStep(parameters.sample_step_px);
     edges_.setMaskSize(parameters.mask_size);
@@ -98,6 +147,7 @@ class MovingEdgeTracker::State {
   MovingEdgeTrackerParameters parameters_;
   vpMe edges_;
   DiscTracker seeds_;
+  DiscFinder finder_;
   vpImage<unsigned char> crop_;
   bool tracking_ = false;
   EllipseShape shape_;
@@ -177,11 +227,9 @@ EllipseFeature MovingEdgeTracker::State::follow(Canvas& canvas, const EllipseSha
   measured->ellipse.v += origin.y();
 
   const EllipseShape shape = shape_of(measured->ellipse);
-  const Eigen::Vector2d half = half_extent(shape);
-  if (shape.centre.x() - half.x() < 1.0 || shape.centre.y() - half.y() < 1.0 ||
-      shape.centre.x() + half.x() > frame.width - 2 ||
-      shape.centre.y() + half.y() > frame.height - 2)
-    return lost(FeatureStatus::cut_by_border);
+  const double visible = visible_share(measured->ellipse, frame);
+  if (visible < parameters_.min_visible) return lost(FeatureStatus::cut_by_border);
+  measured->held = std::min(1.0, measured->held / visible);
   const double growth = 0.25 * std::log(shape.sigma.determinant() / expected.sigma.determinant());
   if (std::abs(growth) > parameters_.max_scale_step ||
       (shape.centre - expected.centre).norm() > 2.0 * parameters_.range_px)
@@ -214,10 +262,19 @@ EllipseFeature MovingEdgeTracker::track(Canvas& canvas) {
 }
 
 std::vector<EllipseFeature> MovingEdgeTracker::find_all(Canvas& canvas) {
+  const Window frame = canvas.frame().full();
+  canvas.require(frame);
+  const MovingEdgeTrackerParameters& parameters = state_->parameters_;
   std::vector<EllipseFeature> features;
-  for (const EllipseFeature& seed : state_->seeds_.find_all(canvas)) {
-    const EllipseShape shape = shape_of(seed.ellipse);
-    const EllipseFeature feature = state_->follow(canvas, shape, shape);
+  for (const DiscCandidate& candidate : state_->finder_.find(
+           canvas.image(), frame, parameters.finder.polarity, parameters.finder.min_axis_ratio)) {
+    std::optional<EllipseShape> seed;
+    if (candidate.status == FeatureStatus::found)
+      seed = candidate.fit.shape;
+    else if (candidate.status == FeatureStatus::cut_by_border && parameters.min_visible < 1.0)
+      seed = arc_ellipse(candidate.blob);
+    if (!seed) continue;
+    const EllipseFeature feature = state_->follow(canvas, *seed, *seed);
     if (feature.status == FeatureStatus::found) features.push_back(feature);
   }
   return features;

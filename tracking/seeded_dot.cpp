@@ -8,6 +8,7 @@ namespace vigia::tracking {
 
 SeededDot::SeededDot() {
   setGraphics(false);
+  setComputeMoments(true);
 }
 
 std::optional<EllipseShape> SeededDot::track(const vpImage<unsigned char>& image,

@@ -16,6 +16,9 @@ struct MovingEdgeTrackerParameters {
   double threshold = 1500.0;    ///< ViSP's likelihood threshold of an edge
   /// Share of the sites that must hold on to the outline; fewer mean occlusion.
   double min_good_sites = 0.75;
+  /// Smallest share of the outline inside the image; 1 refuses ellipses that the border cuts. (An
+  /// arc tells centre and axes poorly, and the covariance does not say how poorly.)
+  double min_visible = 1.0;
   double max_scale_step = 0.3;  ///< largest change of log size between two frames
   double gate_sigmas = 3.5;     ///< of an acquisition, in the prediction's standard deviations
   /// Standard deviations of what the tracker is off by, beyond the scatter of its sites: centre and

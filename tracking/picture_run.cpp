@@ -1,0 +1,164 @@
+#include "vigia/tracking/picture_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <opencv2/imgproc.hpp>
+
+#include "vigia/core/angle.hpp"
+#include "vigia/core/error.hpp"
+#include "vigia/tracking/correlation_tracker.hpp"
+#include "vigia/tracking/disc_tracker.hpp"
+#include "vigia/tracking/moving_edge_tracker.hpp"
+
+namespace vigia::tracking {
+namespace {
+
+std::string number(double value, int digits) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  return text;
+}
+
+// RFC 4180: a field with a comma or quote is quoted.
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  return out + "\"";
+}
+
+// A light line on a wider dark one.
+struct Pen {
+  cv::Scalar colour;
+  int width;
+};
+
+}  // namespace
+
+std::unique_ptr<EllipseTracker> make_picture_tracker(const std::string& name) {
+  DiscTrackerParameters disc;
+  disc.polarity = Polarity::either;
+  disc.search_margin_px = 20.0;
+  if (name == "disc") return std::make_unique<DiscTracker>(disc);
+  if (name == "ellipse") {
+    MovingEdgeTrackerParameters parameters;
+    parameters.min_visible = 0.4;
+    parameters.finder = disc;
+    return std::make_unique<MovingEdgeTracker>(parameters);
+  }
+  if (name == "correlation") {
+    CorrelationTrackerParameters parameters;
+    parameters.finder = disc;
+    parameters.search_margin_px = disc.search_margin_px;
+    return std::make_unique<CorrelationTracker>(parameters);
+  }
+  return nullptr;
+}
+
+PictureRun::PictureRun(const std::string& tracker)
+    : tracker_(tracker), finder_(make_picture_tracker(tracker)) {
+  if (!finder_)
+    throw InputError("there is no tracker '" + tracker +
+                     "'; known are 'disc', 'ellipse' and 'correlation'");
+}
+
+std::vector<PictureRow> PictureRun::find(const std::filesystem::path& name,
+                                         imaging::Canvas& canvas) {
+  targets_.clear();
+  std::vector<PictureRow> rows;
+  for (const EllipseFeature& feature : finder_->find_all(canvas)) {
+    Target target{++numbers_, make_picture_tracker(tracker_)};
+    target.tracker->start(canvas, feature.ellipse);
+    rows.push_back({name, target.number, feature});
+    targets_.push_back(std::move(target));
+  }
+  return rows;
+}
+
+PictureResult PictureRun::next(const std::filesystem::path& name,
+                               const imaging::ImageFrame& picture) {
+  imaging::Canvas canvas;
+  canvas.attach(picture);
+  PictureResult result{name, {}};
+  const bool same_size = picture.width() == width_ && picture.height() == height_;
+  width_ = picture.width();
+  height_ = picture.height();
+  if (same_size)
+    for (Target& target : targets_)
+      result.rows.push_back({name, target.number, target.tracker->track(canvas)});
+  const auto found = std::count_if(result.rows.begin(), result.rows.end(), [](const auto& row) {
+    return row.feature.status == FeatureStatus::found;
+  });
+  if (found == 0 || 2 * static_cast<std::size_t>(found) < result.rows.size())
+    result.rows = find(name, canvas);
+  return result;
+}
+
+void run_pictures(
+    const std::string& tracker, const std::vector<std::filesystem::path>& files,
+    const std::function<void(const PictureResult&, const imaging::ImageFrame&)>& report) {
+  PictureRun run(tracker);
+  for (const std::filesystem::path& file : files) {
+    const imaging::ImageFrame picture = imaging::read_image(file);
+    report(run.next(file, picture), picture);
+  }
+}
+
+std::string picture_csv_header() {
+  return "image,target,status,u,v,a,b,psi_deg,sigma_u,sigma_v,sigma_a,sigma_b,sigma_psi_deg,score,"
+         "contrast";
+}
+
+std::string picture_csv_line(const PictureRow& row) {
+  const EllipseFeature& feature = row.feature;
+  std::string line = csv_field(row.image.string()) + ',' + std::to_string(row.target) + ',' +
+                     std::string(to_string(feature.status));
+  if (feature.status != FeatureStatus::found) return line + std::string(12, ',');
+  const Ellipse& e = feature.ellipse;
+  for (const double value : {e.u, e.v, e.a, e.b}) line += ',' + number(value, 4);
+  line += ',' + number(to_deg(e.psi), 3);
+  for (int i = 0; i < 4; ++i) line += ',' + number(std::sqrt(feature.covariance(i, i)), 4);
+  line += ',' + number(to_deg(std::sqrt(feature.covariance(4, 4))), 3);
+  return line + ',' + number(feature.score, 3) + ',' + number(feature.contrast, 1);
+}
+
+void draw_overlay(const PictureResult& result, vpImage<vpRGBa>& picture) {
+  cv::Mat canvas(static_cast<int>(picture.getHeight()), static_cast<int>(picture.getWidth()),
+                 CV_8UC4, picture.bitmap);
+  constexpr int kShift = 4;  // OpenCV's sub-pixel drawing, sixteenths
+  const auto fine = [](double value) { return static_cast<int>(std::lround(value * 16.0)); };
+  // vpRGBa is R, G, B, A in memory.
+  const Pen dark{cv::Scalar(20, 20, 60, 255), 3};
+  const Pen light{cv::Scalar(255, 210, 0, 255), 1};
+  for (const Pen& pen : {dark, light})
+    for (const PictureRow& row : result.rows) {
+      if (row.feature.status != FeatureStatus::found) continue;
+      const Ellipse& e = row.feature.ellipse;
+      cv::ellipse(canvas, cv::Point(fine(e.u), fine(e.v)), cv::Size(fine(e.a), fine(e.b)),
+                  to_deg(e.psi), 0.0, 360.0, pen.colour, pen.width, cv::LINE_AA, kShift);
+      const double arm = std::clamp(0.3 * e.b, 2.0, 8.0);
+      cv::line(canvas, cv::Point(fine(e.u - arm), fine(e.v)), cv::Point(fine(e.u + arm), fine(e.v)),
+               pen.colour, pen.width, cv::LINE_AA, kShift);
+      cv::line(canvas, cv::Point(fine(e.u), fine(e.v - arm)), cv::Point(fine(e.u), fine(e.v + arm)),
+               pen.colour, pen.width, cv::LINE_AA, kShift);
+      const std::string text = std::to_string(row.target);
+      const double scale = 0.4;
+      int below = 0;
+      const cv::Size size =
+          cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, scale, pen.width, &below);
+      const int u = static_cast<int>(e.u + 0.71 * e.a) + 3;
+      const int v = static_cast<int>(e.v - 0.71 * e.a) - 1;
+      const cv::Point place(
+          std::clamp(u, 1, std::max(1, canvas.cols - size.width - 2)),
+          std::clamp(v, size.height + 2, std::max(size.height + 2, canvas.rows - 3)));
+      cv::putText(canvas, text, place, cv::FONT_HERSHEY_SIMPLEX, scale, pen.colour, pen.width,
+                  cv::LINE_AA);
+    }
+}
+
+}  // namespace vigia::tracking
