@@ -242,13 +242,27 @@ bool sees(const WorldMap& world, const Landmark& landmark, const Eigen::Vector3d
          world.plan.line_of_sight(eye, landmark.centre_w());
 }
 
-TEST(ArmingolRoom, SeesWhatTable1ListsFromEachControlArea) {
-  MapReader reader(load_config(VIGIA_SOURCE_DIR "/config/worlds/armingol-room.yaml"), "");
-  const WorldMap world = read_world_map(reader);
+/// The room of the mission, and the loop through the mission's waypoints.
+struct ArmingolRoom : testing::Test {
+  void SetUp() override {
+    MapReader mission(load_config(VIGIA_SOURCE_DIR "/config/missions/armingol-room.yaml"), "");
+    MapReader world_reader = mission.map_or_file("world");
+    world = read_world_map(world_reader);
+    constexpr Range kCoordinate{0.0, 12.0};
+    MapReader route = mission.map("route");
+    std::vector<Eigen::Vector2d> corners = route.points2("via_m", kCoordinate, 1);
+    corners.insert(corners.begin(), mission.map("start").vector2("position_m", kCoordinate));
+    corners.push_back(route.vector2("goal_m", kCoordinate));
+    loop = Path(corners);
+  }
+
+  WorldMap world;
+  Path loop;
+};
+
+TEST_F(ArmingolRoom, SeesWhatTable1ListsFromEachControlArea) {
   const std::vector<std::set<int>> table1{{0, 4, 6}, {4}, {1, 2, 3}, {1, 2, 3},
                                           {2, 3, 4}, {4}, {0, 6}};
-  const std::vector<Eigen::Vector2d> corners{{0.9, 2.0}, {9.4, 2.0}, {9.4, 6.0}, {0.9, 6.0}};
-  const Path loop(corners);
   for (std::size_t area = 0; area < table1.size(); ++area) {
     for (const Landmark& landmark : world.landmarks.all()) {
       int seen = 0;
@@ -269,11 +283,8 @@ TEST(ArmingolRoom, SeesWhatTable1ListsFromEachControlArea) {
   }
 }
 
-TEST(ArmingolRoom, KeepsHalfAMetreFreeAroundTheLoop) {
-  MapReader reader(load_config(VIGIA_SOURCE_DIR "/config/worlds/armingol-room.yaml"), "");
-  const WorldMap world = read_world_map(reader);
-  const std::vector<Eigen::Vector2d> corners{{0.9, 2.0}, {9.4, 2.0}, {9.4, 6.0}, {0.9, 6.0}};
-  const Path dense = Path(corners).resampled(0.05);
+TEST_F(ArmingolRoom, KeepsHalfAMetreFreeAroundTheLoop) {
+  const Path dense = loop.resampled(0.05);
   for (const Eigen::Vector2d& p : dense.points())
     EXPECT_GE(world.plan.clearance(p), 0.5) << p.transpose();
 }
