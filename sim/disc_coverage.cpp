@@ -27,8 +27,8 @@ LocalConic localise(const Eigen::Matrix3d& Q, const Intrinsics& k, int u, int v)
   const Eigen::Vector3d Qu = Q * r_u;
   LocalConic q{r_u.dot(Qu),       2.0 * r_v.dot(Qu), r_v.dot(Q * r_v),
                2.0 * r_u.dot(Qr), 2.0 * r_v.dot(Qr), r.dot(Qr)};
-  const double slope = std::max(std::hypot(q.d, q.e), 1e-12);
-  for (double* term : {&q.a, &q.b, &q.c, &q.d, &q.e, &q.f}) *term /= slope;
+  const double per_slope = 1.0 / std::sqrt(q.d * q.d + q.e * q.e + 1e-24);
+  for (double* term : {&q.a, &q.b, &q.c, &q.d, &q.e, &q.f}) *term *= per_slope;
   return q;
 }
 
@@ -83,9 +83,16 @@ void signed_distance(const Row& row, int count, float* __restrict out) {
   }
 }
 
+/// out[i] = Σ weight[j] · in[i + j · step].
 VIGIA_PIXEL_LOOP
-void accumulate(const float* __restrict in, float weight, int count, float* __restrict out) {
-  for (int i = 0; i < count; ++i) out[i] += weight * in[i];
+void convolve(const float* __restrict in, std::ptrdiff_t step, const float* __restrict weight,
+              int taps, int count, float* __restrict out) {
+  for (int i = 0; i < count; ++i) out[i] = weight[0] * in[i];
+  for (int j = 1; j < taps; ++j) {
+    const float* const shifted = in + j * step;
+    const float w = weight[j];
+    for (int i = 0; i < count; ++i) out[i] += w * shifted[i];
+  }
 }
 
 std::vector<float> gaussian_kernel(double sigma) {
@@ -105,8 +112,9 @@ std::vector<float> gaussian_kernel(double sigma) {
 
 std::vector<float> conic_coverage(const Eigen::Matrix3d& Q, const Intrinsics& intrinsics,
                                   const imaging::Window& window, double least_curvature_px) {
-  // Beyond the band a pixel is whole: the first-order distance is trusted for round outlines only.
-  const float band = least_curvature_px > 5.0 ? 1.5F : 1e30F;
+  // Half a pixel's diagonal is 0.71. The first-order distance is up to 1.09 times the true one
+  // where the radius of curvature exceeds 5 px; below that every pixel is cut.
+  const float band = least_curvature_px > 5.0 ? 0.85F : 1e30F;
   const auto entry = [&](int i, int j) { return static_cast<float>(Q(i, j)); };
   Row row{{entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)},
           static_cast<float>((window.u - intrinsics.u0) / intrinsics.px),
@@ -146,20 +154,13 @@ void blur(std::vector<float>& image, const imaging::Window& window, double sigma
   const int inner = window.width - 2 * margin;
   if (inner <= 0 || window.height <= 2 * margin) return;
 
-  std::vector<float> across(image.size(), 0.0F);
-  for (int row = 0; row < window.height; ++row) {
-    const float* in = image.data() + row * stride;
-    float* out = across.data() + row * stride + margin;
-    for (int i = 0; i < taps; ++i)
-      accumulate(in + i, kernel[static_cast<std::size_t>(i)], inner, out);
-  }
-  std::fill(image.begin(), image.end(), 0.0F);
-  for (int row = margin; row < window.height - margin; ++row) {
-    float* out = image.data() + row * stride + margin;
-    for (int i = 0; i < taps; ++i)
-      accumulate(across.data() + (row - margin + i) * stride + margin,
-                 kernel[static_cast<std::size_t>(i)], inner, out);
-  }
+  std::vector<float> across(image.size());
+  for (int row = 0; row < window.height; ++row)
+    convolve(image.data() + row * stride, 1, kernel.data(), taps, inner,
+             across.data() + row * stride + margin);
+  for (int row = margin; row < window.height - margin; ++row)
+    convolve(across.data() + (row - margin) * stride + margin, stride, kernel.data(), taps, inner,
+             image.data() + row * stride + margin);
 }
 
 }  // namespace vigia::sim

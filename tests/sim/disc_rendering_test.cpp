@@ -81,7 +81,7 @@ Bias measure_bias(double radius_px, double kdu, double blur_px, double obliquene
   const WorldMap world = test_room();
   const Scene scene(world,
                     appearance_of(world,
-                                  "disc_grey: 0, plate_grey: 255, plate_factor: 3, "
+                                  "disc_grey: 0, plate_grey: 255, wall_grey: 255, "
                                   "contrast: 0, clutter_per_m2: 0"),
                     1);
   ImagingParams params;
@@ -90,7 +90,7 @@ Bias measure_bias(double radius_px, double kdu, double blur_px, double obliquene
   RandomStream random(2, "views");
   Bias bias;
   for (int i = 0; i < kViews; ++i) {
-    const double distance = random.uniform(2.0, 4.0);
+    const double distance = random.uniform(1.8, 2.8);
     const Eigen::Isometry3d wMc = random_view(random, distance, obliqueness_deg);
     const Intrinsics k = camera(radius_px * distance / 0.1, kdu);
     const Moments truth = true_moments(*world.landmarks.find(6), wMc, k);
