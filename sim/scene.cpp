@@ -338,7 +338,7 @@ class SceneFrame : public imaging::Frame {
   mutable std::vector<DecalView> decals_;
 };
 
-Scene::Scene(const WorldMap& world, std::shared_ptr<const Appearance> appearance,
+Scene::Scene(const WorldMap& world, const std::shared_ptr<const Appearance>& appearance,
              std::uint64_t seed)
     : impl_(std::make_unique<Impl>(world, appearance ? *appearance : Appearance{},
                                    derive_seed(seed, "pixel noise"))) {}

@@ -5,12 +5,12 @@
 namespace vigia::sim {
 
 Simulator::Simulator(const RobotSetup& setup, const WorldMap& world,
-                     std::shared_ptr<const Appearance> appearance, const Pose2& start,
+                     const std::shared_ptr<const Appearance>& appearance, const Pose2& start,
                      std::uint64_t seed)
     : setup_(setup),
       plan_(world.plan),
       robot_(setup.robot, start, setup.initial_zoom_mm, derive_seed(seed, "robot")),
-      scene_(world, std::move(appearance), derive_seed(seed, "scene")) {
+      scene_(world, appearance, derive_seed(seed, "scene")) {
   robot_.set_zoom_range(setup_.zoom.min_zoom_mm(), setup_.zoom.max_zoom_mm());
 }
 

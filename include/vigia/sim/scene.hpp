@@ -29,7 +29,8 @@ struct Appearance;
 /// light plates, clutter.
 class Scene {
  public:
-  Scene(const WorldMap& world, std::shared_ptr<const Appearance> appearance, std::uint64_t seed);
+  Scene(const WorldMap& world, const std::shared_ptr<const Appearance>& appearance,
+        std::uint64_t seed);
   ~Scene();
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;

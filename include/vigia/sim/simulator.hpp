@@ -22,7 +22,8 @@ RobotSetup read_robot_setup(MapReader& reader);
 class Simulator {
  public:
   Simulator(const RobotSetup& setup, const WorldMap& world,
-            std::shared_ptr<const Appearance> appearance, const Pose2& start, std::uint64_t seed);
+            const std::shared_ptr<const Appearance>& appearance, const Pose2& start,
+            std::uint64_t seed);
 
   Robot& robot() { return robot_; }
   const Robot& robot() const { return robot_; }
