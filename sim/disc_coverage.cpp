@@ -98,12 +98,14 @@ void convolve(const float* __restrict in, std::ptrdiff_t step, const float* __re
 std::vector<float> gaussian_kernel(double sigma) {
   const int radius = blur_margin(sigma);
   std::vector<double> weights;
+  weights.reserve(static_cast<std::size_t>(2) * static_cast<std::size_t>(radius) + 1);
   double sum = 0.0;
   for (int i = -radius; i <= radius; ++i) {
     weights.push_back(std::exp(-0.5 * i * i / (sigma * sigma)));
     sum += weights.back();
   }
   std::vector<float> kernel;
+  kernel.reserve(weights.size());
   for (const double weight : weights) kernel.push_back(static_cast<float>(weight / sum));
   return kernel;
 }

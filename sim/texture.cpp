@@ -8,16 +8,20 @@
 namespace vigia::sim {
 namespace {
 
+/// Entry of a square table of @p side entries a row.
+std::size_t at_cell(int row, int column, int side) {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(side) +
+         static_cast<std::size_t>(column);
+}
+
 /// Value noise on a lattice of @p cells cells that wraps round, smooth to the second derivative.
 std::vector<double> value_noise(int size, int cells, std::uint64_t seed) {
   RandomStream random(seed, "lattice");
-  std::vector<double> lattice(static_cast<std::size_t>(cells * cells));
+  std::vector<double> lattice(at_cell(cells, 0, cells));
   for (double& value : lattice) value = random.uniform(-1.0, 1.0);
-  const auto at = [&](int i, int j) {
-    return lattice[static_cast<std::size_t>((i % cells) * cells + j % cells)];
-  };
+  const auto at = [&](int i, int j) { return lattice[at_cell(i % cells, j % cells, cells)]; };
   const auto smooth = [](double t) { return t * t * t * (t * (t * 6.0 - 15.0) + 10.0); };
-  std::vector<double> noise(static_cast<std::size_t>(size * size));
+  std::vector<double> noise(at_cell(size, 0, size));
   for (int row = 0; row < size; ++row) {
     for (int column = 0; column < size; ++column) {
       const double y = static_cast<double>(row) * cells / size;
@@ -28,7 +32,7 @@ std::vector<double> value_noise(int size, int cells, std::uint64_t seed) {
       const double fx = smooth(x - j);
       const double top = at(i, j) + fx * (at(i, j + 1) - at(i, j));
       const double bottom = at(i + 1, j) + fx * (at(i + 1, j + 1) - at(i + 1, j));
-      noise[static_cast<std::size_t>(row * size + column)] = top + fy * (bottom - top);
+      noise[at_cell(row, column, size)] = top + fy * (bottom - top);
     }
   }
   return noise;
@@ -87,14 +91,14 @@ NoiseTile::NoiseTile(std::uint64_t seed) : packed_(kSize * kSize) {
   double peak = 0.0;
   for (double& value : sum) peak = std::max(peak, std::abs(value -= mean));
   const auto byte = [&](int row, int column) {
-    const double value = sum[static_cast<std::size_t>((row % kSize) * kSize + column % kSize)];
+    const double value = sum[at_cell(row % kSize, column % kSize, kSize)];
     return static_cast<std::uint32_t>(std::lround(127.5 + 127.0 * value / peak));
   };
   for (int row = 0; row < kSize; ++row) {
     for (int column = 0; column < kSize; ++column) {
-      packed_[static_cast<std::size_t>(row * kSize + column)] =
-          byte(row, column) | byte(row, column + 1) << 8 | byte(row + 1, column) << 16 |
-          byte(row + 1, column + 1) << 24;
+      packed_[at_cell(row, column, kSize)] = byte(row, column) | byte(row, column + 1) << 8 |
+                                             byte(row + 1, column) << 16 |
+                                             byte(row + 1, column + 1) << 24;
     }
   }
 }
