@@ -202,7 +202,8 @@ double ellipse_scale(const MapDrive& drive) {
 std::vector<Eigen::Vector2d> ellipse_outline(const Eigen::Vector2d& p,
                                              const Eigen::Matrix2d& covariance, double k) {
   constexpr int kPoints = 64;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(covariance);
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
+  solver.computeDirect(covariance);
   const Eigen::Vector2d axes = k * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
   std::vector<Eigen::Vector2d> outline;
   for (int i = 0; i < kPoints; ++i) {

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <map>
-#include <regex>
 
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
@@ -41,20 +40,22 @@ cairo_surface_t* make_surface(const std::filesystem::path& file, std::string* by
                    "a picture's name ends in .png, .svg or .pdf, found \"" + ending + "\"");
 }
 
-// Cairo names the groups of an SVG by a number that counts through the process: number them anew in
-// the order of their appearance.
+// Cairo names the groups of an SVG "surface" and a number that counts through the process: number
+// them anew in the order of their appearance.
 std::string renumber_groups(const std::string& svg) {
-  static const std::regex name("surface([0-9]+)");
+  const std::string name = "surface";
   std::map<std::string, std::size_t> numbers;
   std::string renumbered;
-  auto rest = svg.cbegin();
-  for (std::sregex_iterator match(svg.begin(), svg.end(), name), end; match != end; ++match) {
-    const std::size_t number = numbers.emplace((*match)[1], numbers.size()).first->second;
-    renumbered.append(rest, (*match)[1].first);
-    renumbered += std::to_string(number);
-    rest = (*match)[1].second;
+  std::size_t done = 0;
+  for (std::size_t at = svg.find(name); at != std::string::npos; at = svg.find(name, done)) {
+    const std::size_t from = at + name.size();
+    const std::size_t to = svg.find_first_not_of("0123456789", from);
+    const std::size_t count = numbers.size();
+    renumbered += svg.substr(done, from - done);
+    renumbered += std::to_string(numbers.emplace(svg.substr(from, to - from), count).first->second);
+    done = to;
   }
-  return renumbered.append(rest, svg.cend());
+  return renumbered + svg.substr(done);
 }
 
 void set_source(cairo_t* context, Colour colour) {

@@ -1,5 +1,6 @@
 #include "travel.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
@@ -17,7 +18,8 @@ std::vector<double> travelled_m(const std::vector<Pose2>& poses) {
 
 double position_sigma_m(const Eigen::Matrix3d& covariance) {
   const Eigen::Matrix2d position = covariance.topLeftCorner<2, 2>();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(position, Eigen::EigenvaluesOnly);
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
+  solver.computeDirect(position, Eigen::EigenvaluesOnly);
   return std::sqrt(std::max(0.0, solver.eigenvalues().maxCoeff()));
 }
 
