@@ -71,9 +71,9 @@ void print_statistics(const Campaign& campaign, const evaluation::SeedStatistics
     fmt::print("  path maximum    {} cm\n", with_interval(l.position_max, 100, 2));
     fmt::print("  PCRLB ratio     {}\n", with_interval(l.pcrlb_ratio, 1, 3));
     fmt::print("  NEES per dof    {:.3f} over time", l.nees_per_dof);
-    if (l.anees_looks > 0)
-      fmt::print("; ANEES in its 95 % band at {:.0f} % of {} looks", 100 * l.anees_in_band,
-                 l.anees_looks);
+    if (!l.anees.empty())
+      fmt::print("; ANEES in its 95 % band at {:.0f} % of {} looks:\n                  {:.2f}",
+                 100 * l.anees_in_band, l.anees.size(), fmt::join(l.anees, " "));
     fmt::print("\n");
   }
 }

@@ -36,6 +36,21 @@ Eigen::Matrix3d move_jacobian_control(const Pose2& pose, const OdometryIncrement
   return dx_du;
 }
 
+OdometryIncrement chord_increment(const Pose2& before, const Pose2& after, double turned,
+                                  Stamp from, Stamp to) {
+  const Pose2 moved = compose(inverse(before), after);
+  OdometryIncrement u{from, to, 0.5 * turned, 0.0, 0.0};
+  const double chord = std::hypot(moved.x, moved.y);
+  if (chord > 1e-9) {  // below, the chord's direction is rounding error
+    const double bearing = std::atan2(moved.y, moved.x);
+    const bool backward = std::cos(bearing - 0.5 * turned) < 0.0;
+    u.trans = backward ? -chord : chord;
+    u.rot1 = backward ? wrap_angle(bearing + kPi) : bearing;
+  }
+  u.rot2 = turned - u.rot1;
+  return u;
+}
+
 OdometryIncrement arc_increment(double v, double w, Stamp from, Stamp to) {
   const double dt = (to - from).seconds();
   const double half = 0.5 * w * dt;

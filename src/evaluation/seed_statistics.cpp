@@ -56,8 +56,11 @@ LocalizerStatistics localizer_statistics(const std::vector<DriveScore>& scores,
   statistics.pcrlb_ratio = evaluation::pcrlb_ratio(errors, bounds, kBootstrapSeed);
 
   const auto nees = look_nees(scores, name);
-  statistics.anees_looks = static_cast<int>(nees.front().size());
-  if (statistics.anees_looks > 0) statistics.anees_in_band = anees(nees, 3).inside_band;
+  if (!nees.front().empty()) {
+    const Anees over_looks = anees(nees, 3);
+    statistics.anees = over_looks.per_dof;
+    statistics.anees_in_band = over_looks.inside_band;
+  }
   return statistics;
 }
 

@@ -35,6 +35,11 @@ Eigen::Matrix3d move_jacobian_pose(const Pose2& pose, const OdometryIncrement& u
 /// ∂move/∂(rot1, trans, rot2).
 Eigen::Matrix3d move_jacobian_control(const Pose2& pose, const OdometryIncrement& u);
 
+/// The increment between two poses, @p turned the angle turned meanwhile (not wrapped): trans is the
+/// chord, negative when it was driven backwards.
+OdometryIncrement chord_increment(const Pose2& before, const Pose2& after, double turned,
+                                  Stamp from, Stamp to);
+
 /// The increment of a base that ran at constant speed v (m/s) and turn rate w (rad/s): an arc,
 /// whose chord is trans.
 OdometryIncrement arc_increment(double v, double w, Stamp from, Stamp to);

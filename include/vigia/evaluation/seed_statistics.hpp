@@ -19,7 +19,7 @@ struct LocalizerStatistics {
   Estimate pcrlb_ratio;
   double nees_per_dof = 0.0;    ///< mean over time and seeds
   double anees_in_band = 0.0;   ///< share of the looks at which ANEES lies in its 95 % band
-  int anees_looks = 0;          ///< looks that every seed made, over which the share is taken
+  std::vector<double> anees;    ///< per dof, at the end of each look that every seed made
 };
 
 struct SeedStatistics {
