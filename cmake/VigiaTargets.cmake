@@ -1,5 +1,6 @@
 # vigia_module(NAME SOURCES… [PUBLIC …] [PRIVATE …]) makes the static library vigia::NAME.
-# vigia_test(MODULE SOURCES… [LINK …]) makes the GoogleTest program test_MODULE.
+# vigia_test(MODULE SOURCES… [LINK …] [LABELS …]) makes the GoogleTest program test_MODULE; the label
+# slow keeps its tests out of an ordinary run.
 
 add_library(vigia_options INTERFACE)
 target_compile_features(vigia_options INTERFACE cxx_std_17)
@@ -25,12 +26,16 @@ function(vigia_module name)
 endfunction()
 
 function(vigia_test module)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LABELS" ${ARGN})
+  set(properties TIMEOUT 300)
+  if(ARG_LABELS)
+    list(APPEND properties LABELS ${ARG_LABELS})
+  endif()
   add_executable(test_${module} ${ARG_SOURCES})
   target_link_libraries(test_${module} PRIVATE vigia_options ${ARG_LINK} GTest::gmock GTest::gtest_main)
   target_include_directories(test_${module} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(test_${module} PRIVATE
     VIGIA_SOURCE_DIR="${PROJECT_SOURCE_DIR}" VIGIA_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
   gtest_discover_tests(test_${module} TEST_PREFIX ${module}. DISCOVERY_TIMEOUT 120
-                       PROPERTIES TIMEOUT 300)
+                       PROPERTIES ${properties})
 endfunction()
