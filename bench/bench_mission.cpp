@@ -21,7 +21,8 @@ double full_frame_ms(const mission::MissionSetup& setup) {
   const sim::Simulator simulator(setup.robot, setup.world, setup.appearance, setup.start, 1);
   constexpr int kFrames = 50;
   const auto start = std::chrono::steady_clock::now();
-  for (int i = 0; i < kFrames; ++i) benchmark::DoNotOptimize(imaging::grey_image(*simulator.expose()));
+  for (int i = 0; i < kFrames; ++i)
+    benchmark::DoNotOptimize(imaging::grey_image(*simulator.expose()));
   const std::chrono::duration<double, std::milli> spent = std::chrono::steady_clock::now() - start;
   return spent.count() / kFrames;
 }
@@ -43,8 +44,12 @@ void run(benchmark::State& state, bool full_frames) {
   state.counters["full_frame_ms"] = full_frame_ms(setup);
 }
 
-void mission_with_windows(benchmark::State& state) { run(state, false); }
-void mission_with_full_frames(benchmark::State& state) { run(state, true); }
+void mission_with_windows(benchmark::State& state) {
+  run(state, false);
+}
+void mission_with_full_frames(benchmark::State& state) {
+  run(state, true);
+}
 
 BENCHMARK(mission_with_windows)->Unit(benchmark::kMillisecond);
 BENCHMARK(mission_with_full_frames)->Unit(benchmark::kMillisecond);

@@ -115,8 +115,8 @@ void Robot::begin_look() {
 }
 
 OdometryIncrement Robot::read_odometry() {
-  OdometryIncrement u = chord_increment(odometry_pose_, truth_.pose, turned_, odometry_stamp_,
-                                        truth_.stamp);
+  OdometryIncrement u =
+      chord_increment(odometry_pose_, truth_.pose, turned_, odometry_stamp_, truth_.stamp);
   const Eigen::Matrix3d covariance = control_covariance(u, params_.odometry);
   u.rot1 += std::sqrt(covariance(0, 0)) * odometry_random_.normal();
   u.trans += std::sqrt(covariance(1, 1)) * odometry_random_.normal();

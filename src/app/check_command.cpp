@@ -1,10 +1,11 @@
+#include "commands.hpp"
+
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "commands.hpp"
 #include "vigia/mission/setup.hpp"
 
 namespace vigia::app {
@@ -42,8 +43,7 @@ int check(const CheckOptions& options) {
 
 void add_check(CLI::App& app, int& status) {
   auto options = std::make_shared<CheckOptions>();
-  CLI::App* command =
-      app.add_subcommand("check", "Validate a mission, world or robot file");
+  CLI::App* command = app.add_subcommand("check", "Validate a mission, world or robot file");
   command->add_option("file", options->file, "YAML file")->required();
   command->add_option("--set", options->overrides, "Override a key of a mission")
       ->type_name("KEY=VALUE")

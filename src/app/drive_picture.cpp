@@ -37,8 +37,8 @@ void DrivePicture::draw(const evaluation::DriveScore& score,
                         const std::filesystem::path& png) const {
   const auto& primary = score.localizers.at(setup_->primary);
   report::MapDrive drive{setup_->world};
-  drive.title = fmt::format("{} – {} after {:.1f} s", setup_->name, to_string(score.outcome),
-                            score.sim_s);
+  drive.title =
+      fmt::format("{} – {} after {:.1f} s", setup_->name, to_string(score.outcome), score.sim_s);
   drive.subtitle = fmt::format(
       "seed {}, policy {}, {} looks; {}: final {:.1f} cm, rms {:.1f} cm, NEES {:.2f} per dof",
       score.seed, setup_->look.policy, score.perception.looks, setup_->primary,

@@ -1,4 +1,4 @@
-#include <unistd.h>
+#include "commands.hpp"
 
 #include <chrono>
 #include <cstdio>
@@ -8,8 +8,8 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
-#include "commands.hpp"
 #include "vigia/core/config.hpp"
 #include "vigia/core/output_file.hpp"
 #include "vigia/evaluation/seed_runs.hpp"
@@ -85,11 +85,11 @@ void write_csv(const std::string& file, const std::vector<evaluation::DriveScore
       "position_rmse_m,position_max_m,nees_mean,pcrlb_position_rms_m,lost_s\n";
   for (const auto& score : scores)
     for (const auto& [name, l] : score.localizers)
-      text += fmt::format("{},{},{:.3f},{},{},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.4f},{:.6f},{:.2f}\n",
-                          score.seed, to_string(score.outcome), score.sim_s,
-                          score.perception.looks, score.perception.stops, name,
-                          l.position_final_m, l.heading_final_rad, l.position_rmse_m,
-                          l.position_max_m, l.nees_mean, l.pcrlb_position_rms_m, l.lost_s);
+      text += fmt::format(
+          "{},{},{:.3f},{},{},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.4f},{:.6f},{:.2f}\n", score.seed,
+          to_string(score.outcome), score.sim_s, score.perception.looks, score.perception.stops,
+          name, l.position_final_m, l.heading_final_rad, l.position_rmse_m, l.position_max_m,
+          l.nees_mean, l.pcrlb_position_rms_m, l.lost_s);
   write_file(file, text);
 }
 

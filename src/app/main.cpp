@@ -1,3 +1,5 @@
+#include "commands.hpp"
+
 #include <exception>
 
 #include <CLI/CLI.hpp>
@@ -5,7 +7,6 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include "commands.hpp"
 #include "vigia/core/error.hpp"
 
 namespace {
@@ -25,8 +26,9 @@ void log_to_stderr() {
 int main(int argc, char** argv) {
   log_to_stderr();
   cv::setNumThreads(1);
-  CLI::App app{"vigia keeps a mobile robot localized by looking at the right landmark, at the right "
-               "moment, at the right zoom."};
+  CLI::App app{
+      "vigia keeps a mobile robot localized by looking at the right landmark, at the right "
+      "moment, at the right zoom."};
   app.set_version_flag("--version", VIGIA_VERSION);
   app.require_subcommand(1);
   int status = 0;

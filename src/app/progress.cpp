@@ -1,10 +1,9 @@
 #include "progress.hpp"
 
-#include <unistd.h>
-
 #include <cstdio>
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 namespace vigia::app {
 

@@ -1,3 +1,8 @@
+#include "commands.hpp"
+#include "drive_picture.hpp"
+#include "frame_album.hpp"
+#include "progress.hpp"
+
 #include <iostream>
 #include <memory>
 #include <string>
@@ -5,10 +10,6 @@
 
 #include <fmt/format.h>
 
-#include "commands.hpp"
-#include "drive_picture.hpp"
-#include "frame_album.hpp"
-#include "progress.hpp"
 #include "vigia/evaluation/drive_score.hpp"
 #include "vigia/mission/mission.hpp"
 #include "vigia/mission/run_folder.hpp"
@@ -28,33 +29,32 @@ struct RunOptions {
 void print_summary(const evaluation::DriveScore& score, const std::string& folder) {
   fmt::print("{}  seed {}  {} after {:.1f} s\n\n", score.mission, score.seed,
              to_string(score.outcome), score.sim_s);
-  fmt::print("{:<10} {:>10} {:>10} {:>10} {:>9} {:>9} {:>7} {:>8} {:>9}\n", "localizer",
-             "final cm", "rms cm", "max cm", "final °", "rms °", "NEES/3", "limit cm", "lost s");
+  fmt::print("{:<10} {:>10} {:>10} {:>10} {:>9} {:>9} {:>7} {:>8} {:>9}\n", "localizer", "final cm",
+             "rms cm", "max cm", "final °", "rms °", "NEES/3", "limit cm", "lost s");
   for (const auto& [name, s] : score.localizers) {
-    fmt::print("{:<10} {:>10.2f} {:>10.2f} {:>10.2f} {:>9.3f} {:>9.3f} {:>7.2f} {:>8.2f} {:>9.1f}\n",
-               name, 100 * s.position_final_m, 100 * s.position_rmse_m, 100 * s.position_max_m,
-               to_deg(s.heading_final_rad), to_deg(s.heading_rmse_rad), s.nees_mean / 3.0,
-               100 * s.pcrlb_position_rms_m, s.lost_s);
+    fmt::print(
+        "{:<10} {:>10.2f} {:>10.2f} {:>10.2f} {:>9.3f} {:>9.3f} {:>7.2f} {:>8.2f} {:>9.1f}\n", name,
+        100 * s.position_final_m, 100 * s.position_rmse_m, 100 * s.position_max_m,
+        to_deg(s.heading_final_rad), to_deg(s.heading_rmse_rad), s.nees_mean / 3.0,
+        100 * s.pcrlb_position_rms_m, s.lost_s);
   }
   const auto& p = score.perception;
   fmt::print("\n{} looks, {} stops ({:.1f} s), centring {:.2f} px rms, {:.1f} px max, {} losses\n",
-             p.looks, p.stops, p.stopped_s, p.centring_rms_px, p.centring_max_px,
-             p.target_losses);
+             p.looks, p.stops, p.stopped_s, p.centring_rms_px, p.centring_max_px, p.target_losses);
   fmt::print("\nrun folder: {}\npicture:    {}/map.png\n", folder, folder);
 }
 
 int run(const RunOptions& options) {
   const mission::MissionSetup setup = mission::load_mission(options.mission, options.overrides);
-  const std::string out = options.out.empty()
-                              ? fmt::format("runs/{}-{}", setup.name, options.seed)
-                              : options.out;
+  const std::string out =
+      options.out.empty() ? fmt::format("runs/{}-{}", setup.name, options.seed) : options.out;
   mission::RunFolder folder(out);
   evaluation::DriveScorer scorer;
   DrivePicture picture;
   FrameAlbum album;
   Progress progress(options.quiet || options.json);
-  const auto outcome = mission::run_mission(setup, options.seed,
-                                            {&scorer, &picture, &album, &progress, &folder});
+  const auto outcome =
+      mission::run_mission(setup, options.seed, {&scorer, &picture, &album, &progress, &folder});
   const std::string summary = evaluation::summary_json(scorer.score());
   folder.folder().add("summary.json", summary);
   folder.folder().make("frames");
@@ -77,8 +77,9 @@ void add_run(CLI::App& app, int& status) {
   command->add_option("--seed", options->seed, "Seed of every random stream")
       ->capture_default_str();
   command->add_option("--out", options->out, "Run folder (default runs/<mission>-<seed>)");
-  command->add_option("--set", options->overrides,
-                      "Override a key of the resolved mission, e.g. --set planner.policy=random")
+  command
+      ->add_option("--set", options->overrides,
+                   "Override a key of the resolved mission, e.g. --set planner.policy=random")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   command->add_flag("--json", options->json, "Print summary.json on stdout");

@@ -63,8 +63,8 @@ void DriveScorer::on_start(const mission::MissionSetup& setup, std::uint64_t see
   impl_->score.seed = seed;
   impl_->score.primary = setup.primary;
   for (std::size_t i = 0; i < setup.localizers.size(); ++i)
-    impl_->sums.emplace_back(PosteriorBound(setup.prior.covariance, setup.robot.robot.head,
-                                            setup.robot.robot.sensor));
+    impl_->sums.emplace_back(
+        PosteriorBound(setup.prior.covariance, setup.robot.robot.head, setup.robot.robot.sensor));
   impl_->last_zoom_mm = setup.robot.initial_zoom_mm;
 }
 
@@ -79,10 +79,9 @@ void DriveScorer::Impl::score_localizer(const mission::Tick& tick, std::size_t i
   const Belief& belief = *tick.localizers[i].belief;
   const auto& update = tick.localizers[i].update;
   const double turned = wrap_angle(tick.truth.pose.theta - tick.true_pose_before.theta);
-  const auto u = chord_increment(tick.true_pose_before, tick.truth.pose, turned,
-                                 tick.odometry.from, tick.odometry.to);
-  sum.bound.predict(tick.true_pose_before, u,
-                    control_covariance(u, setup->robot.robot.odometry));
+  const auto u = chord_increment(tick.true_pose_before, tick.truth.pose, turned, tick.odometry.from,
+                                 tick.odometry.to);
+  sum.bound.predict(tick.true_pose_before, u, control_covariance(u, setup->robot.robot.odometry));
   const bool fused = update && update->status == localization::UpdateStatus::fused;
   if (update) ++count_of(sum.score, update->status);
   if (fused && update->landmark) {
@@ -110,8 +109,7 @@ void DriveScorer::Impl::score_look(const mission::Tick& tick, LocalizerSums& sum
                                    double squared) {
   auto& looks = sum.score.looks;
   if (looks.empty() || looks.back().look != tick.look) looks.push_back({tick.look});
-  looks.back() = {tick.look, nees, squared,
-                  sum.bound.covariance().topLeftCorner<2, 2>().trace()};
+  looks.back() = {tick.look, nees, squared, sum.bound.covariance().topLeftCorner<2, 2>().trace()};
 }
 
 void DriveScorer::Impl::score_perception(const mission::Tick& tick) {
@@ -164,6 +162,8 @@ void DriveScorer::on_finish(mission::Outcome outcome, Stamp end) {
   }
 }
 
-const DriveScore& DriveScorer::score() const { return impl_->score; }
+const DriveScore& DriveScorer::score() const {
+  return impl_->score;
+}
 
 }  // namespace vigia::evaluation

@@ -22,8 +22,7 @@ Estimate mean_of(const std::vector<DriveScore>& scores, Value value) {
 std::vector<std::vector<double>> look_nees(const std::vector<DriveScore>& scores,
                                            const std::string& name) {
   std::size_t looks = scores.front().localizers.at(name).looks.size();
-  for (const auto& score : scores)
-    looks = std::min(looks, score.localizers.at(name).looks.size());
+  for (const auto& score : scores) looks = std::min(looks, score.localizers.at(name).looks.size());
   std::vector<std::vector<double>> nees(scores.size());
   for (std::size_t run = 0; run < scores.size(); ++run)
     for (std::size_t k = 0; k < looks; ++k)

@@ -1,9 +1,9 @@
 #include "look_around.hpp"
 
+#include "../../servo/slew_law.hpp"
+
 #include <algorithm>
 #include <cmath>
-
-#include "../../servo/slew_law.hpp"
 
 namespace vigia::mission {
 namespace {
@@ -38,8 +38,8 @@ HeadRates LookAround::step(const HeadReading& head) const {
   rates.angles.pan = law.rate_for(aim.pan - head.angles.pan);
   rates.angles.tilt = law.rate_for(aim.tilt - head.angles.tilt);
   const double zoom_error = setup_.robot.zoom.min_zoom_mm() - head.zoom_mm;
-  rates.zoom_mm_s = std::clamp(zoom_error / setup_.tick_s, -limits.zoom_rate_mm_s,
-                               limits.zoom_rate_mm_s);
+  rates.zoom_mm_s =
+      std::clamp(zoom_error / setup_.tick_s, -limits.zoom_rate_mm_s, limits.zoom_rate_mm_s);
   return rates;
 }
 

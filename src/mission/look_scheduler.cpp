@@ -31,9 +31,9 @@ std::optional<GazeOrder> LookScheduler::choose(Stamp now, const Belief& belief,
   std::vector<LandmarkId> excluded;
   for (const auto& failure : failures_) excluded.push_back(failure.first);
 
-  const auto landmark = policy_->choose({now, belief, head, station_m, setup_.path,
-                                         setup_.world.landmarks, visibility_, information_,
-                                         excluded});
+  const auto landmark =
+      policy_->choose({now, belief, head, station_m, setup_.path, setup_.world.landmarks,
+                       visibility_, information_, excluded});
   if (!landmark) return std::nullopt;
   GazeOrder order;
   order.look = next_look_++;

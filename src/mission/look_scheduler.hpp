@@ -13,8 +13,7 @@ namespace vigia::mission {
 /// Decides when to look and at what: trigger, policy, and the landmarks that failed lately.
 class LookScheduler {
  public:
-  LookScheduler(const MissionSetup& setup, const InformationModel& information,
-                std::uint64_t seed);
+  LookScheduler(const MissionSetup& setup, const InformationModel& information, std::uint64_t seed);
 
   /// What is demanded now; the planner's slow rate is kept inside.
   planner::LookDemand demand(Stamp now, const Belief& belief, double travelled_m);

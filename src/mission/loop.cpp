@@ -21,8 +21,8 @@ std::unique_ptr<localization::Localizer> make_localizer(const std::string& name,
                                                         const MissionSetup& setup) {
   if (name == "odometry")
     return std::make_unique<localization::OdometryLocalizer>(setup.ekf.odometry);
-  return std::make_unique<localization::EkfLocalizer>(
-      setup.world.landmarks, setup.robot.robot.head, setup.ekf, setup.world.plan);
+  return std::make_unique<localization::EkfLocalizer>(setup.world.landmarks, setup.robot.robot.head,
+                                                      setup.ekf, setup.world.plan);
 }
 
 localization::RelocalizerParams relocalizer_params(const MissionSetup& setup) {
@@ -63,8 +63,8 @@ Outcome Loop::run() {
   tell("plan", {{"length_m", setup_.path.length()}}, {{"policy", setup_.look.policy}});
   std::optional<Outcome> end;
   while (!(end = outcome())) tick();
-  tell(std::string(to_string(*end)), {{"x_m", simulator_.robot().truth().pose.x},
-                                      {"y_m", simulator_.robot().truth().pose.y}});
+  tell(std::string(to_string(*end)),
+       {{"x_m", simulator_.robot().truth().pose.x}, {"y_m", simulator_.robot().truth().pose.y}});
   for (Listener* listener : listeners_) listener->on_finish(*end, now_);
   return *end;
 }

@@ -1,18 +1,19 @@
 #pragma once
 
+#include "look_around.hpp"
+#include "look_scheduler.hpp"
+#include "timed_frame.hpp"
+#include "watcher.hpp"
+
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "look_around.hpp"
-#include "look_scheduler.hpp"
-#include "timed_frame.hpp"
 #include "vigia/localization/disc_information.hpp"
 #include "vigia/localization/relocalizer.hpp"
 #include "vigia/mission/mission.hpp"
 #include "vigia/servo/base_motion.hpp"
-#include "watcher.hpp"
 
 namespace vigia::mission {
 

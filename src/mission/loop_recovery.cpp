@@ -42,7 +42,9 @@ void Loop::relocalize() {
     const auto& best = found.hypotheses.front();
     localizers_[primary_]->reset(now_, {best.pose, best.covariance});
     recovering_ = false;
-    tell("recovered", {{"x_m", best.pose.x}, {"y_m", best.pose.y}, {"theta_rad", best.pose.theta},
+    tell("recovered", {{"x_m", best.pose.x},
+                       {"y_m", best.pose.y},
+                       {"theta_rad", best.pose.theta},
                        {"sigma_m", belief().position_sigma()}});
     replan(best.pose);
     return;

@@ -31,13 +31,11 @@ void read_ekf(MapReader reader, const sim::RobotParams& robot, localization::Ekf
   params.iterations = static_cast<int>(reader.integer("iterations", {1, 20}, params.iterations));
   params.history_s = reader.number("history_s", {0.0, 60.0}, params.history_s);
   params.lost_sigma_m = reader.number("lost_sigma_m", {0.01, 100.0}, params.lost_sigma_m);
-  params.lost_rejections = static_cast<int>(
-      reader.integer("lost_rejections", {1, 100000}, params.lost_rejections));
-  params.lost_looks =
-      static_cast<int>(reader.integer("lost_looks", {1, 1000}, params.lost_looks));
+  params.lost_rejections =
+      static_cast<int>(reader.integer("lost_rejections", {1, 100000}, params.lost_rejections));
+  params.lost_looks = static_cast<int>(reader.integer("lost_looks", {1, 1000}, params.lost_looks));
   params.nis_looks = static_cast<int>(reader.integer("nis_looks", {1, 1000}, params.nis_looks));
-  params.nis_probability =
-      reader.number("nis_probability", {1e-12, 0.5}, params.nis_probability);
+  params.nis_probability = reader.number("nis_probability", {1e-12, 0.5}, params.nis_probability);
   reader.finish();
 }
 
@@ -47,8 +45,7 @@ void read_look(MapReader& reader, LookParams& params) {
   while (nearest + 1 < policies.size() && policies[nearest] != params.policy) ++nearest;
   params.policy = policies[reader.choice("policy", policies, nearest)];
   if (reader.has("fixed_landmark"))
-    params.fixed_landmark =
-        static_cast<LandmarkId>(reader.integer("fixed_landmark", {0, 1000000}));
+    params.fixed_landmark = static_cast<LandmarkId>(reader.integer("fixed_landmark", {0, 1000000}));
   MapReader trigger = reader.map("trigger");
   params.trigger.kind = trigger.choice("kind", {"distance", "uncertainty"}, 0) == 0
                             ? planner::LookTriggerParams::Kind::distance
@@ -72,8 +69,8 @@ void read_look(MapReader& reader, LookParams& params) {
   params.timeout_s = reader.number("timeout_s", {0.1, 600.0}, params.timeout_s);
   params.radius_px = reader.number("radius_px", {4.0, 200.0}, params.radius_px);
   params.exclude_s = reader.number("exclude_s", {0.0, 600.0}, params.exclude_s);
-  params.rejections_to_drop = static_cast<int>(
-      reader.integer("rejections_to_drop", {1, 1000}, params.rejections_to_drop));
+  params.rejections_to_drop =
+      static_cast<int>(reader.integer("rejections_to_drop", {1, 1000}, params.rejections_to_drop));
   reader.finish();
 }
 
@@ -94,8 +91,7 @@ void read_gaze(MapReader reader, servo::GazeParams& params) {
   params.search_step_deg = reader.number("search_step_deg", {0.1, 60.0}, params.search_step_deg);
   params.search_radius_px =
       reader.number("search_radius_px", {2.0, 200.0}, params.search_radius_px);
-  params.motion_horizon_s =
-      reader.number("motion_horizon_s", {0.0, 60.0}, params.motion_horizon_s);
+  params.motion_horizon_s = reader.number("motion_horizon_s", {0.0, 60.0}, params.motion_horizon_s);
   params.look_angle_deg = reader.number("look_angle_deg", {0.0, 10.0}, params.look_angle_deg);
   params.aim_gain = reader.number("aim_gain", {0.1, 50.0}, params.aim_gain);
   reader.finish();
@@ -105,7 +101,8 @@ void read_pilot(MapReader reader, pilot::PathFollowerParams& params) {
   params.lookahead_m = reader.number("lookahead_m", {0.02, 5.0}, params.lookahead_m);
   params.turn_in_place_deg =
       reader.number("turn_in_place_deg", {1.0, 180.0}, params.turn_in_place_deg);
-  params.goal_tolerance_m = reader.number("goal_tolerance_m", {0.005, 5.0}, params.goal_tolerance_m);
+  params.goal_tolerance_m =
+      reader.number("goal_tolerance_m", {0.005, 5.0}, params.goal_tolerance_m);
   params.slow_down_m = reader.number("slow_down_m", {0.0, 10.0}, params.slow_down_m);
   reader.finish();
 }

@@ -13,8 +13,7 @@ struct RunFolder::Impl {
   double busy_ms = 0.0;  ///< in the mission's ticks and in this recorder
 };
 
-RunFolder::RunFolder(const std::filesystem::path& folder)
-    : impl_(std::make_unique<Impl>(folder)) {}
+RunFolder::RunFolder(const std::filesystem::path& folder) : impl_(std::make_unique<Impl>(folder)) {}
 
 RunFolder::~RunFolder() = default;
 
@@ -31,7 +30,9 @@ void RunFolder::on_tick(const Tick& tick) {
   impl_->busy_ms += tick.timing.step + recording.elapsed_ms();
 }
 
-void RunFolder::on_event(const Event& event) { impl_->tables->event(event); }
+void RunFolder::on_event(const Event& event) {
+  impl_->tables->event(event);
+}
 
 void RunFolder::on_finish(Outcome /*outcome*/, Stamp end) {
   impl_->tables->close();
@@ -39,6 +40,8 @@ void RunFolder::on_finish(Outcome /*outcome*/, Stamp end) {
                     impl_->tables->timing_json(1e-3 * impl_->busy_ms, end.seconds()));
 }
 
-OutputFolder& RunFolder::folder() { return impl_->folder; }
+OutputFolder& RunFolder::folder() {
+  return impl_->folder;
+}
 
 }  // namespace vigia::mission

@@ -1,6 +1,5 @@
 #include "vigia/mission/setup.hpp"
 
-
 #include "read_params.hpp"
 
 namespace vigia::mission {
@@ -48,8 +47,8 @@ void read_route(MapReader route, MissionSetup& setup) {
   setup.waypoints.push_back(route.vector2("goal_m", kMetres));
   setup.route.robot_radius_m = setup.robot.robot.radius_m;
   setup.route.clearance_m = route.number("clearance_m", {0.0, 5.0}, setup.route.clearance_m);
-  setup.route.iterations = static_cast<int>(
-      route.integer("iterations", {1, 1000000}, setup.route.iterations));
+  setup.route.iterations =
+      static_cast<int>(route.integer("iterations", {1, 1000000}, setup.route.iterations));
   setup.route.spacing_m = route.number("spacing_m", {0.005, 1.0}, setup.route.spacing_m);
   setup.route_seed = static_cast<std::uint64_t>(
       route.integer("seed", {0, 2147483647}, static_cast<std::int64_t>(setup.route_seed)));

@@ -17,7 +17,9 @@ void put(Buffer& buffer, fmt::format_string<Args...> format, Args&&... args) {
   fmt::format_to(std::back_inserter(buffer), format, std::forward<Args>(args)...);
 }
 
-std::string_view view(const Buffer& buffer) { return {buffer.data(), buffer.size()}; }
+std::string_view view(const Buffer& buffer) {
+  return {buffer.data(), buffer.size()};
+}
 
 /// One line of a TUM trajectory: stamp x y z qx qy qz qw.
 void write_tum(OutputFile& file, Stamp stamp, const Pose2& pose) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "stopwatch.hpp"
+
 #include "vigia/imaging/frame.hpp"
 
 namespace vigia::mission {

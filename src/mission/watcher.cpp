@@ -22,8 +22,8 @@ std::optional<tracking::EllipsePrediction> Watcher::predict(const SensorSnapshot
   const auto image = expected_image(sensor, belief, landmark, head_);
   const auto model = localization::predict_disc(landmark, sensor, head_, belief.pose, {});
   if (!image || !model) return std::nullopt;
-  const double angle = noise_.look_angle * noise_.look_angle +
-                       noise_.reading_angle * noise_.reading_angle;
+  const double angle =
+      noise_.look_angle * noise_.look_angle + noise_.reading_angle * noise_.reading_angle;
   const Eigen::Vector3d bias(angle, angle, noise_.look_focal * noise_.look_focal);
   const Eigen::Matrix3d covariance =
       model->dz_dpose * belief.covariance * model->dz_dpose.transpose() +
@@ -44,8 +44,8 @@ Sighting Watcher::watch(const imaging::Frame& frame, servo::TrackRequest request
   canvas_.attach(frame);
   if (request == servo::TrackRequest::track) {
     if (prediction && settled_)
-      tracker_->expect_motion(
-          Eigen::Vector2d(prediction->ellipse.u, prediction->ellipse.v) - *settled_);
+      tracker_->expect_motion(Eigen::Vector2d(prediction->ellipse.u, prediction->ellipse.v) -
+                              *settled_);
     sighting.feature = tracker_->track(canvas_);
   } else if (prediction) {
     sighting.feature = tracker_->acquire(canvas_, *prediction);
@@ -53,8 +53,7 @@ Sighting Watcher::watch(const imaging::Frame& frame, servo::TrackRequest request
   return sighting;
 }
 
-void Watcher::settle(const SensorSnapshot& sensor, const Belief& belief,
-                     const Landmark& landmark) {
+void Watcher::settle(const SensorSnapshot& sensor, const Belief& belief, const Landmark& landmark) {
   const auto image = expected_image(sensor, belief, landmark, head_);
   settled_ = image ? std::optional(Eigen::Vector2d(image->u, image->v)) : std::nullopt;
 }

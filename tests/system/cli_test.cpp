@@ -1,5 +1,5 @@
-#include <sys/stat.h>
-#include <unistd.h>
+#include "support/process.hpp"
+#include "support/temp_dir.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -7,9 +7,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-
-#include "support/process.hpp"
-#include "support/temp_dir.hpp"
+#include <sys/stat.h>
+#include <unistd.h>
 
 namespace vigia {
 namespace {
@@ -36,7 +35,9 @@ std::string short_run(const fs::path& out) {
   return "run " + kMission + " --quiet --set timeout_s=2 --out " + out.string();
 }
 
-TEST_F(Program, WithoutACommandIsWrongUsage) { EXPECT_EQ(vigia("").status, 2); }
+TEST_F(Program, WithoutACommandIsWrongUsage) {
+  EXPECT_EQ(vigia("").status, 2);
+}
 
 TEST_F(Program, TellsItsVersion) {
   const auto result = vigia("--version");

@@ -6,8 +6,8 @@ namespace vigia {
 namespace {
 
 mission::MissionSetup short_mission() {
-  return mission::load_mission(std::string(VIGIA_SOURCE_DIR) + "/config/missions/armingol-room.yaml",
-                               {"timeout_s=6"});
+  return mission::load_mission(
+      std::string(VIGIA_SOURCE_DIR) + "/config/missions/armingol-room.yaml", {"timeout_s=6"});
 }
 
 std::vector<std::string> summaries(const mission::MissionSetup& setup, int threads) {

@@ -13,15 +13,15 @@ struct BaseRates {
 
 /// Rates of the head and the zoom.
 struct HeadRates {
-  HeadAngles angles;          ///< rad/s
-  double zoom_mm_s = 0.0;     ///< mm/s of nominal focal length
+  HeadAngles angles;       ///< rad/s
+  double zoom_mm_s = 0.0;  ///< mm/s of nominal focal length
 };
 
 /// What base, head and zoom can do. Each axis is limited by itself.
 struct BaseLimits {
-  double speed = 0.3;          ///< m/s
-  double acceleration = 0.5;   ///< m/s²
-  double turn_rate = 0.8;      ///< rad/s
+  double speed = 0.3;              ///< m/s
+  double acceleration = 0.5;       ///< m/s²
+  double turn_rate = 0.8;          ///< rad/s
   double turn_acceleration = 2.0;  ///< rad/s²
 };
 
@@ -30,9 +30,9 @@ struct HeadLimits {
   double pan_max = kPi;
   double tilt_min = -0.5 * kPi;
   double tilt_max = 0.5 * kPi;
-  double rate = 1.5;           ///< rad/s, pan and tilt
-  double acceleration = 8.0;   ///< rad/s²
-  double zoom_rate_mm_s = 8.0; ///< the slowest axis: 5 s from end to end
+  double rate = 1.5;            ///< rad/s, pan and tilt
+  double acceleration = 8.0;    ///< rad/s²
+  double zoom_rate_mm_s = 8.0;  ///< the slowest axis: 5 s from end to end
 };
 
 /// What the head reports: encoder angles, zoom position, and the rates it runs at.

@@ -17,7 +17,7 @@ struct Intrinsics {
   double py = 700.0;  ///< focal length over pixel height, px
   double u0 = 319.5;
   double v0 = 239.5;
-  double kdu = 0.0;   ///< 1, distorted to undistorted
+  double kdu = 0.0;  ///< 1, distorted to undistorted
 };
 
 /// Normalised undistorted image point of a pixel: the ray is (x, y, 1) in the camera frame.

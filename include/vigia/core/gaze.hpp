@@ -13,9 +13,9 @@ struct GazeOrder {
   LookId look = 0;
   LandmarkId landmark = 0;
   Stamp issued;
-  Stamp expires;             ///< without a feature by then, the order ends as failed
-  double dwell_s = 1.0;      ///< how long the landmark is watched once it is tracked
-  double radius_px = 24.0;   ///< apparent semi-major axis that the zoom holds
+  Stamp expires;            ///< without a feature by then, the order ends as failed
+  double dwell_s = 1.0;     ///< how long the landmark is watched once it is tracked
+  double radius_px = 24.0;  ///< apparent semi-major axis that the zoom holds
 };
 
 /// What the gaze does now.

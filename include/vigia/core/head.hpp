@@ -9,8 +9,8 @@ namespace vigia {
 /// optical axis at camera_offset zero, y left, z up, turned by pan (counter-clockwise seen from
 /// above) and tilt (positive up). Frame c: z forward, x right, y down.
 struct HeadGeometry {
-  Eigen::Vector3d mount_r{0.15, 0.0, 1.0};        ///< crossing of the two axes in the base frame, m
-  double mount_yaw = 0.0;                          ///< direction of pan = 0 in the base frame, rad
+  Eigen::Vector3d mount_r{0.15, 0.0, 1.0};  ///< crossing of the two axes in the base frame, m
+  double mount_yaw = 0.0;                   ///< direction of pan = 0 in the base frame, rad
   Eigen::Vector3d camera_offset_h{0.0, 0.0, 0.0};  ///< optical centre in the head frame, m
 };
 

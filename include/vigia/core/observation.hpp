@@ -30,11 +30,11 @@ struct Ellipse {
 /// What the robot's own sensors said when an image was exposed. Everything here is a reading, not
 /// the truth.
 struct SensorSnapshot {
-  Stamp stamp;           ///< middle of the exposure
-  Intrinsics intrinsics; ///< calibrated, at the zoom's reading
-  HeadAngles head;       ///< encoder readings
-  double zoom_mm = 8.0;  ///< zoom motor's reading
-  LookId look = 0;       ///< the acquisition that this image belongs to
+  Stamp stamp;            ///< middle of the exposure
+  Intrinsics intrinsics;  ///< calibrated, at the zoom's reading
+  HeadAngles head;        ///< encoder readings
+  double zoom_mm = 8.0;   ///< zoom motor's reading
+  LookId look = 0;        ///< the acquisition that this image belongs to
 };
 
 /// The image of one disc.

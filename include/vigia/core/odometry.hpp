@@ -20,9 +20,9 @@ struct OdometryIncrement {
 /// Random-walk error of odometry: variances that grow with the distance driven and the angle
 /// turned, so that splitting an increment changes nothing.
 struct OdometryNoise {
-  double trans_per_sqrt_m = 0.01;     ///< m per √m driven, along the path
-  double rot_per_sqrt_m = 0.005;      ///< rad per √m driven
-  double rot_per_sqrt_rad = 0.01;     ///< rad per √rad turned
+  double trans_per_sqrt_m = 0.01;  ///< m per √m driven, along the path
+  double rot_per_sqrt_m = 0.005;   ///< rad per √m driven
+  double rot_per_sqrt_rad = 0.01;  ///< rad per √rad turned
 };
 
 /// Covariance Σ of (rot1, trans, rot2); the turn's error is split evenly between rot1 and rot2.
@@ -35,8 +35,8 @@ Eigen::Matrix3d move_jacobian_pose(const Pose2& pose, const OdometryIncrement& u
 /// ∂move/∂(rot1, trans, rot2).
 Eigen::Matrix3d move_jacobian_control(const Pose2& pose, const OdometryIncrement& u);
 
-/// The increment between two poses, @p turned the angle turned meanwhile (not wrapped): trans is the
-/// chord, negative when it was driven backwards.
+/// The increment between two poses, @p turned the angle turned meanwhile (not wrapped): trans is
+/// the chord, negative when it was driven backwards.
 OdometryIncrement chord_increment(const Pose2& before, const Pose2& after, double turned,
                                   Stamp from, Stamp to);
 

@@ -22,19 +22,45 @@ struct Stamp {
   double seconds() const { return static_cast<double>(ns) * 1e-9; }
 };
 
-constexpr Duration operator-(Stamp a, Stamp b) { return {a.ns - b.ns}; }
-constexpr Stamp operator+(Stamp a, Duration d) { return {a.ns + d.ns}; }
-constexpr Stamp operator-(Stamp a, Duration d) { return {a.ns - d.ns}; }
+constexpr Duration operator-(Stamp a, Stamp b) {
+  return {a.ns - b.ns};
+}
+constexpr Stamp operator+(Stamp a, Duration d) {
+  return {a.ns + d.ns};
+}
+constexpr Stamp operator-(Stamp a, Duration d) {
+  return {a.ns - d.ns};
+}
 
-constexpr bool operator==(Stamp a, Stamp b) { return a.ns == b.ns; }
-constexpr bool operator!=(Stamp a, Stamp b) { return a.ns != b.ns; }
-constexpr bool operator<(Stamp a, Stamp b) { return a.ns < b.ns; }
-constexpr bool operator<=(Stamp a, Stamp b) { return a.ns <= b.ns; }
-constexpr bool operator>(Stamp a, Stamp b) { return a.ns > b.ns; }
-constexpr bool operator>=(Stamp a, Stamp b) { return a.ns >= b.ns; }
-constexpr bool operator<(Duration a, Duration b) { return a.ns < b.ns; }
-constexpr bool operator>(Duration a, Duration b) { return a.ns > b.ns; }
-constexpr bool operator<=(Duration a, Duration b) { return a.ns <= b.ns; }
-constexpr bool operator>=(Duration a, Duration b) { return a.ns >= b.ns; }
+constexpr bool operator==(Stamp a, Stamp b) {
+  return a.ns == b.ns;
+}
+constexpr bool operator!=(Stamp a, Stamp b) {
+  return a.ns != b.ns;
+}
+constexpr bool operator<(Stamp a, Stamp b) {
+  return a.ns < b.ns;
+}
+constexpr bool operator<=(Stamp a, Stamp b) {
+  return a.ns <= b.ns;
+}
+constexpr bool operator>(Stamp a, Stamp b) {
+  return a.ns > b.ns;
+}
+constexpr bool operator>=(Stamp a, Stamp b) {
+  return a.ns >= b.ns;
+}
+constexpr bool operator<(Duration a, Duration b) {
+  return a.ns < b.ns;
+}
+constexpr bool operator>(Duration a, Duration b) {
+  return a.ns > b.ns;
+}
+constexpr bool operator<=(Duration a, Duration b) {
+  return a.ns <= b.ns;
+}
+constexpr bool operator>=(Duration a, Duration b) {
+  return a.ns >= b.ns;
+}
 
 }  // namespace vigia

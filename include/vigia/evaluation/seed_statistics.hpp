@@ -13,13 +13,13 @@ namespace vigia::evaluation {
 struct LocalizerStatistics {
   Estimate position_final;
   Estimate heading_final;
-  Estimate position_rmse;   ///< mean over the seeds of each drive's RMS
+  Estimate position_rmse;  ///< mean over the seeds of each drive's RMS
   Estimate position_max;
-  double bound_rms = 0.0;   ///< √ of the mean trace of the posterior Cramér–Rao bound
+  double bound_rms = 0.0;  ///< √ of the mean trace of the posterior Cramér–Rao bound
   Estimate pcrlb_ratio;
-  double nees_per_dof = 0.0;    ///< mean over time and seeds
-  double anees_in_band = 0.0;   ///< share of the looks at which ANEES lies in its 95 % band
-  std::vector<double> anees;    ///< per dof, at the end of each look that every seed made
+  double nees_per_dof = 0.0;   ///< mean over time and seeds
+  double anees_in_band = 0.0;  ///< share of the looks at which ANEES lies in its 95 % band
+  std::vector<double> anees;   ///< per dof, at the end of each look that every seed made
 };
 
 struct SeedStatistics {

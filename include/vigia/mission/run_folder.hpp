@@ -10,7 +10,8 @@ namespace vigia::mission {
 
 /// Writes a run folder: mission.yaml, truth.tum, <localizer>.tum, ticks.csv, events.jsonl,
 /// timing.json, timing.csv; pictures and the summary are for others to add. wall_s counts the
-/// mission's ticks and this recording, not other listeners. The folder takes its name in folder().commit(), or nothing stays of it.
+/// mission's ticks and this recording, not other listeners. The folder takes its name in
+/// folder().commit(), or nothing stays of it.
 class RunFolder : public Listener {
  public:
   /// Throws InputError when the folder can't be made or would replace something else.

@@ -25,20 +25,20 @@ struct LookParams {
   std::optional<LandmarkId> fixed_landmark;
   planner::LookTriggerParams trigger;
   planner::VisibilityParams visibility;
-  double period_s = 0.2;           ///< how often the planner is asked
-  double dwell_s = 1.0;            ///< how long a landmark is watched once tracked
-  double timeout_s = 8.0;          ///< an order without a feature by then has expired
-  double radius_px = 24.0;         ///< apparent semi-major axis that the zoom holds
-  double exclude_s = 5.0;          ///< how long a landmark that failed is left out
-  int rejections_to_drop = 5;      ///< gated frames in a row after which a look is given up
+  double period_s = 0.2;       ///< how often the planner is asked
+  double dwell_s = 1.0;        ///< how long a landmark is watched once tracked
+  double timeout_s = 8.0;      ///< an order without a feature by then has expired
+  double radius_px = 24.0;     ///< apparent semi-major axis that the zoom holds
+  double exclude_s = 5.0;      ///< how long a landmark that failed is left out
+  int rejections_to_drop = 5;  ///< gated frames in a row after which a look is given up
 };
 
 /// How the robot looks around once it is lost.
 struct RecoveryParams {
-  double step_fraction = 0.7;  ///< of the horizontal field of view between two stops of the sweep
-  double tilt = from_deg(6.0);   ///< of the head during the sweep, rad
-  double settle_s = 0.12;      ///< standing still before a picture counts
-  int sweeps = 3;              ///< given up (outcome stuck) after so many without a result
+  double step_fraction = 0.7;   ///< of the horizontal field of view between two stops of the sweep
+  double tilt = from_deg(6.0);  ///< of the head during the sweep, rad
+  double settle_s = 0.12;       ///< standing still before a picture counts
+  int sweeps = 3;               ///< given up (outcome stuck) after so many without a result
 };
 
 /// A mission, validated: everything that a run needs but the seed.
@@ -48,18 +48,18 @@ struct MissionSetup {
   std::shared_ptr<const sim::Appearance> appearance;
   sim::RobotSetup robot;
 
-  Pose2 start;                ///< true start
-  Prior prior;                ///< what the localizers are told of it
-  double start_sigma_m = 0.0; ///< the true start is drawn round `start` with these
+  Pose2 start;                 ///< true start
+  Prior prior;                 ///< what the localizers are told of it
+  double start_sigma_m = 0.0;  ///< the true start is drawn round `start` with these
   double start_sigma_rad = 0.0;
 
   std::vector<Eigen::Vector2d> waypoints;  ///< start, vias, goal
   planner::RouteParams route;
-  std::uint64_t route_seed = 1;            ///< of OMPL: one route for every seed of the mission
+  std::uint64_t route_seed = 1;  ///< of OMPL: one route for every seed of the mission
 
   double tick_s = 0.04;
   double timeout_s = 600.0;
-  double goal_tolerance_m = 0.3;           ///< of the true robot, for the outcome "arrived"
+  double goal_tolerance_m = 0.3;  ///< of the true robot, for the outcome "arrived"
 
   std::string tracker = "disc";
   std::vector<std::string> localizers;
@@ -69,11 +69,11 @@ struct MissionSetup {
   servo::GazeParams gaze;
   pilot::PathFollowerParams pilot;
   RecoveryParams recovery;
-  bool full_frames = false;                ///< compute every pixel of every frame, for comparison
-  int recorded_frames = 8;                 ///< camera pictures kept in the run folder
+  bool full_frames = false;  ///< compute every pixel of every frame, for comparison
+  int recorded_frames = 8;   ///< camera pictures kept in the run folder
 
-  Path path;                               ///< planned, the same for every seed
-  std::string resolved_yaml;               ///< the whole mission with every default written out
+  Path path;                  ///< planned, the same for every seed
+  std::string resolved_yaml;  ///< the whole mission with every default written out
 };
 
 /// Reads and validates a mission file with command-line overrides ("key.path=value"), and plans its

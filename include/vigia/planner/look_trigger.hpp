@@ -7,9 +7,9 @@ namespace vigia::planner {
 struct LookTriggerParams {
   enum class Kind { distance, uncertainty };
   Kind kind = Kind::distance;
-  double distance_m = 1.0;    ///< travelled (by odometry) between looks
-  double limit_1_m = 0.05;    ///< √λ_max above which the robot relocalises in motion
-  double limit_2_m = 0.10;    ///< √λ_max above which it stops first
+  double distance_m = 1.0;  ///< travelled (by odometry) between looks
+  double limit_1_m = 0.05;  ///< √λ_max above which the robot relocalises in motion
+  double limit_2_m = 0.10;  ///< √λ_max above which it stops first
 };
 
 enum class LookDemand { none, in_motion, stopped };
