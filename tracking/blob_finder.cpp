@@ -13,7 +13,7 @@ namespace vigia::tracking {
 namespace {
 
 constexpr int kLag = 3;             // px over which an edge falls or rises
-constexpr int kGroundDistance = 3;  // px outside a chord's end where the ground's level is read
+constexpr int kGroundDistance = 4;  // px outside a chord's end where the ground's level is read
 constexpr int kSameThreshold = 12;  // fills this close in threshold give the same blob
 
 double median_of_five(std::array<double, 5> values) {
@@ -122,15 +122,19 @@ bool BlobFinder::make_seed(const Chord& chord, Seed& seed) const {
   for (int k = 0; k < 5; ++k)
     samples[static_cast<std::size_t>(k)] = at(u + (k - 2) * std::max(1, length / 8), v);
   seed.disc = median_of_five(samples);
-  const int left = std::max(window_.u, chord.first - kGroundDistance);
-  const int right = std::min(window_.right() - 1, chord.last + kGroundDistance);
+  const auto level = [&](int at_u) {
+    const int inner = std::clamp(at_u, window_.u + 1, window_.right() - 2);
+    return (at(inner - 1, v) + at(inner, v) + at(inner + 1, v)) / 3.0;
+  };
+  const double left = level(chord.first - kGroundDistance);
+  const double right = level(chord.last + kGroundDistance);
   if (chord.first == window_.u && chord.last == window_.right() - 1) return false;
   if (chord.first == window_.u)
-    seed.ground = at(right, v);
+    seed.ground = right;
   else if (chord.last == window_.right() - 1)
-    seed.ground = at(left, v);
+    seed.ground = left;
   else
-    seed.ground = std::min(at(left, v), at(right, v));
+    seed.ground = std::min(left, right);
   if (seed.ground - seed.disc < parameters_.min_contrast) return false;
   seed.threshold = static_cast<int>(0.5 * (seed.disc + seed.ground));
   seed.u = u;
@@ -169,7 +173,7 @@ bool BlobFinder::make_seed(const Chord& chord, Seed& seed) const {
 }
 
 // Takes the run of dark pixels through (u, v). False when it leaves the limit.
-bool BlobFinder::add_run(int u, int v, const Seed& seed) {
+bool BlobFinder::add_run(int u, int v, const Seed& seed, const Run& from) {
   const unsigned char* row = image_->operator[](static_cast<unsigned>(v));
   int first = u;
   int last = u;
@@ -178,27 +182,43 @@ bool BlobFinder::add_run(int u, int v, const Seed& seed) {
   const std::uint32_t number = first_fill_ + fills_;
   std::uint32_t* taken = taken_.data() + static_cast<std::size_t>(v) * image_->getWidth();
   std::fill(taken + first, taken + last + 1, number);
-  runs_.push_back({v, first, last});
-  open_.push_back({v, first, last});
+  const Run run{v, first, last};
+  runs_.push_back(run);
+  open_.push_back({run, from});
   return first >= seed.limit.u && last < seed.limit.right() && v >= seed.limit.v &&
          v < seed.limit.bottom();
 }
 
-void BlobFinder::fill(const Seed& seed) {
+// Takes the runs of row v that touch columns first to last.
+bool BlobFinder::add_touching(int first, int last, int v, const Seed& seed, const Run& from) {
   const std::uint32_t number = first_fill_ + fills_;
+  const unsigned char* row = image_->operator[](static_cast<unsigned>(v));
+  const std::uint32_t* taken = taken_.data() + static_cast<std::size_t>(v) * image_->getWidth();
+  for (int u = first; u <= last; ++u) {
+    if (row[u] >= seed.threshold || taken[u] == number) continue;
+    if (!add_run(u, v, seed, from)) return false;
+    u = runs_.back().last + 1;
+  }
+  return true;
+}
+
+void BlobFinder::fill(const Seed& seed) {
   open_.clear();
   runs_.clear();
   thresholds_.push_back(seed.threshold);
-  bool within = add_run(seed.u, seed.v, seed);
+  const Run nowhere{seed.v - 2, 0, -1};
+  bool within = add_run(seed.u, seed.v, seed, nowhere);
   while (within && !open_.empty()) {
-    const Run run = open_.back();
+    const auto [run, from] = open_.back();
     open_.pop_back();
     for (int v = run.v - 1; within && v <= run.v + 1; v += 2) {
       if (v < window_.v || v >= window_.bottom()) continue;
-      const unsigned char* row = image_->operator[](static_cast<unsigned>(v));
-      const std::uint32_t* taken = taken_.data() + static_cast<std::size_t>(v) * image_->getWidth();
-      for (int u = run.first; within && u <= run.last; ++u)
-        if (row[u] < seed.threshold && taken[u] != number) within = add_run(u, v, seed);
+      // Where it came from, only what sticks out on both sides is new.
+      if (v == from.v)
+        within = add_touching(run.first, std::min(run.last, from.first - 1), v, seed, run) &&
+                 add_touching(std::max(run.first, from.last + 1), run.last, v, seed, run);
+      else
+        within = add_touching(run.first, run.last, v, seed, run);
     }
   }
   ++fills_;
@@ -257,7 +277,8 @@ void BlobFinder::fill(const Seed& seed) {
   double spanned = 0.0;
   for (const auto& [first, last] : span) spanned += last - first + 1;
   blob.solidity = blob.area / spanned;
-  blob.outline = outline_distance(blob.ellipse);
+  // Where the area is wrong already, the outline needs no look.
+  blob.outline = std::abs(blob.fill - 1.0) < 0.2 ? outline_distance(blob.ellipse) : 1e9;
   if (blob.cut) blob.arc = visible_arc();
   blobs_.push_back(blob);
 }

@@ -3,6 +3,7 @@
 #include "ellipse_shape.hpp"
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include <visp3/core/vpImage.h>
@@ -72,7 +73,8 @@ class BlobFinder {
   bool make_seed(const Chord& chord, Seed& seed) const;
   int reach(int u, int v, int du, int dv, int threshold, int limit) const;
   void fill(const Seed& seed);
-  bool add_run(int u, int v, const Seed& seed);
+  bool add_run(int u, int v, const Seed& seed, const Run& from);
+  bool add_touching(int first, int last, int v, const Seed& seed, const Run& from);
   std::vector<Eigen::Vector2d> visible_arc() const;
   double outline_distance(const EllipseShape& ellipse) const;
 
@@ -87,7 +89,7 @@ class BlobFinder {
   std::uint32_t first_fill_ = 1;
   std::uint32_t fills_ = 0;
   std::vector<int> thresholds_;
-  std::vector<Run> open_;
+  std::vector<std::pair<Run, Run>> open_;  ///< with the run that led to it
   std::vector<Run> runs_;
 };
 

@@ -28,7 +28,10 @@ FeatureStatus judge_fit(const EdgeFit& fit, const DiscTrackerParameters& paramet
   if (fit.agreement < parameters.min_occluded_agreement) return FeatureStatus::wrong_object;
   if (contrast < parameters.min_contrast || contrast < parameters.min_contrast_to_noise * fit.noise)
     return FeatureStatus::low_contrast;
-  if (fit.agreement < parameters.min_agreement) return FeatureStatus::occluded;
+  // What hides a disc takes an arc or two of the outline; another form crosses the ellipse often.
+  constexpr int kOccludedArcs = 2;
+  if (fit.agreement < parameters.min_agreement)
+    return fit.bad_arcs <= kOccludedArcs ? FeatureStatus::occluded : FeatureStatus::wrong_object;
   const double ragged =
       parameters.max_raggedness_px + parameters.max_raggedness_ratio * ellipse_of(fit.shape).b;
   return fit.raggedness > ragged ? FeatureStatus::wrong_object : FeatureStatus::found;

@@ -156,11 +156,14 @@ TemplateMatch match_template(const vpImage<unsigned char>& image, const imaging:
   double offset = 0.0;
 
   // The gain enters the Jacobian, so it is solved for first from the columns of share and one.
+  // After a few steps the pixels stay the same, or their coming and going would keep it restless.
+  constexpr int kSettled = 4;
   bool resting = false;
+  imaging::Window window;
   for (int iteration = 0; iteration < parameters.max_iterations; ++iteration) {
     if (ellipse_of(match.shape).b < 1.5) return match;
-    const imaging::Window window =
-        intersect(window_round(match.shape, parameters.margin_px), bounds);
+    if (iteration < kSettled)
+      window = intersect(window_round(match.shape, parameters.margin_px), bounds);
     const BlurredDisc disc(match.shape, parameters.blur_px);
     Sums sums;
     for (int v = window.v; v < window.bottom(); ++v)
@@ -230,7 +233,6 @@ TemplateMatch match_template(const vpImage<unsigned char>& image, const imaging:
   std::array<double, kSectors> square{};
   std::array<int, kSectors> pixels{};
   const BlurredDisc disc(match.shape, parameters.blur_px);
-  const imaging::Window window = intersect(window_round(match.shape, parameters.margin_px), bounds);
   const double beyond = 1.0 + parameters.margin_px / ellipse_of(match.shape).a;
   const Eigen::Matrix2d inverse = match.shape.sigma.inverse();
   for (int v = window.v; v < window.bottom(); ++v)
@@ -247,7 +249,7 @@ TemplateMatch match_template(const vpImage<unsigned char>& image, const imaging:
   std::array<double, kSectors> sorted = square;
   std::nth_element(sorted.begin(), sorted.begin() + kSectors / 2, sorted.end());
   const double limit = std::max(
-      {9.0 * sorted[kSectors / 2], kQuantisationVariance, std::pow(0.2 * match.contrast, 2)});
+      {9.0 * sorted[kSectors / 2], kQuantisationVariance, std::pow(0.12 * match.contrast, 2)});
   int good = 0;
   for (std::size_t k = 0; k < kSectors; ++k) good += square[k] <= limit ? 1 : 0;
   match.agreement = static_cast<double>(good) / kSectors;

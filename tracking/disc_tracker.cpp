@@ -20,6 +20,8 @@ using imaging::Window;
 
 constexpr double kStartBlur = 0.8;  // px
 constexpr int kWidenings = 4;
+constexpr double kEdgeBand = 3.0;  // px round an outline that its fit needs
+constexpr double kVisible = 1.5;   // contrast to noise at which something is there at all
 
 double size_of(const EllipseShape& shape) {
   return std::sqrt(std::sqrt(shape.sigma.determinant()));
@@ -148,10 +150,15 @@ FeatureStatus DiscTracker::State::blame(const std::vector<DiscCandidate>& candid
                                         const Gate& gate, const vpImage<unsigned char>& image,
                                         const Window& window, const Window& frame) {
   const EdgeFit direct = fitter_.fit(image, window, gate.shape, profile_);
-  if (judge_fit(direct, parameters_) == FeatureStatus::occluded &&
-      distance(direct.shape, gate) < 1.0)
-    return cut_by_frame(direct.shape, frame) ? FeatureStatus::cut_by_border
-                                             : FeatureStatus::occluded;
+  const FeatureStatus judged = judge_fit(direct, parameters_);
+  if (direct.converged && distance(direct.shape, gate) < 1.0) {
+    if (judged == FeatureStatus::occluded)
+      return cut_by_frame(direct.shape, frame) ? FeatureStatus::cut_by_border
+                                               : FeatureStatus::occluded;
+    if (judged == FeatureStatus::low_contrast &&
+        std::abs(direct.profile.ground - direct.profile.disc) > kVisible * direct.noise)
+      return FeatureStatus::low_contrast;
+  }
   FeatureStatus status = FeatureStatus::not_found;
   double nearest = std::numeric_limits<double>::infinity();
   for (const DiscCandidate& candidate : candidates) {
@@ -163,7 +170,8 @@ FeatureStatus DiscTracker::State::blame(const std::vector<DiscCandidate>& candid
     nearest = off.norm();
     status = candidate.status;
     if (status == FeatureStatus::found) status = FeatureStatus::wrong_object;
-    if (status == FeatureStatus::cut_by_border && !touches(blob.box, frame))
+    if (status == FeatureStatus::cut_by_border &&
+        contains(frame, window_round(blob.ellipse, kEdgeBand)))
       status = FeatureStatus::wrong_object;
     // A part of what was looked for: smaller, and not larger than it in any direction.
     const Eigen::Vector2d extent = half_extent(gate.shape) * 2.0 * 1.15 + Eigen::Vector2d(2.0, 2.0);

@@ -46,6 +46,7 @@ struct EdgeFit {
   EdgeProfile profile;
   double noise = 0.0;       ///< standard deviation of the residuals, grey levels
   double raggedness = 0.0;  ///< rms distance of the sectors from the ellipse beyond the noise, px
+  int bad_arcs = 0;         ///< runs of neighbouring sectors that disagree
   double agreement = 0.0;   ///< share of the outline's sectors that agree with the model
   bool complete = false;    ///< the whole band lay inside the bounds
 };
@@ -88,6 +89,8 @@ class EdgeFitter {
   EllipseShape band_shape_;
   double band_blur_ = 0.0;
   bool complete_ = false;
+  int bad_arcs_ = 0;
+  double unrest_ = 1.0;  ///< χ² per degree of freedom of the sectors' distances
 
   Normal normal_;
   Vector gradient_;

@@ -275,7 +275,12 @@ std::vector<EllipseFeature> MovingEdgeTracker::find_all(Canvas& canvas) {
       seed = arc_ellipse(candidate.blob);
     if (!seed) continue;
     const EllipseFeature feature = state_->follow(canvas, *seed, *seed);
-    if (feature.status == FeatureStatus::found) features.push_back(feature);
+    // Two blobs of one cut ellipse lead to the same outline.
+    const bool known = std::any_of(features.begin(), features.end(), [&](const auto& other) {
+      return std::hypot(other.ellipse.u - feature.ellipse.u, other.ellipse.v - feature.ellipse.v) <
+             0.5 * other.ellipse.b;
+    });
+    if (feature.status == FeatureStatus::found && !known) features.push_back(feature);
   }
   return features;
 }

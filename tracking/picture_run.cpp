@@ -44,10 +44,13 @@ std::unique_ptr<EllipseTracker> make_picture_tracker(const std::string& name) {
   DiscTrackerParameters disc;
   disc.polarity = Polarity::either;
   disc.search_margin_px = 20.0;
+  // Prints and prints' edges are less perfect than the landmarks of a mission.
+  disc.max_raggedness_px = 0.35;
+  disc.min_agreement = 0.8;
   if (name == "disc") return std::make_unique<DiscTracker>(disc);
   if (name == "ellipse") {
     MovingEdgeTrackerParameters parameters;
-    parameters.min_visible = 0.4;
+    parameters.min_visible = 0.35;
     parameters.finder = disc;
     return std::make_unique<MovingEdgeTracker>(parameters);
   }
@@ -55,6 +58,7 @@ std::unique_ptr<EllipseTracker> make_picture_tracker(const std::string& name) {
     CorrelationTrackerParameters parameters;
     parameters.finder = disc;
     parameters.search_margin_px = disc.search_margin_px;
+    parameters.min_agreement = disc.min_agreement;
     return std::make_unique<CorrelationTracker>(parameters);
   }
   return nullptr;

@@ -17,6 +17,8 @@ double ellipse_distance(const Ellipse& e, const Eigen::Vector2d& p) {
   for (int step = 0; step < 2; ++step) {
     const Eigen::Vector2d scaled(q.x() / e.a, q.y() / e.b);
     const double level = std::max(scaled.norm(), 1e-6);
+    // Far from the outline only the sign counts.
+    if (step == 0 && std::abs(1.0 - level) * e.b > 2.0) return (1.0 - level) * e.b;
     const Eigen::Vector2d gradient(scaled.x() / (e.a * level), scaled.y() / (e.b * level));
     const double d = (1.0 - level) / gradient.norm();
     q += d * gradient.normalized();
@@ -35,6 +37,17 @@ std::vector<float> gaussian(double sigma) {
   }
   for (float& weight : kernel) weight /= sum;
   return kernel;
+}
+
+// Normal numbers, drawn once; each row of an image starts at a random place.
+const std::vector<float>& normal_table() {
+  static const std::vector<float> table = [] {
+    RandomStream random(0, "noise table");
+    std::vector<float> out(1U << 20U);
+    for (float& value : out) value = static_cast<float>(random.normal());
+    return out;
+  }();
+  return table;
 }
 
 }  // namespace
@@ -201,9 +214,15 @@ void SyntheticImage::paint_clutter(int count, const std::vector<Ellipse>& keep_f
 
 vpImage<unsigned char> SyntheticImage::expose(double noise, RandomStream& random) const {
   vpImage<unsigned char> image(static_cast<unsigned>(height_), static_cast<unsigned>(width_));
-  for (std::size_t i = 0; i < light_.size(); ++i) {
-    const double value = static_cast<double>(light_[i]) + noise * random.normal();
-    image.bitmap[i] = static_cast<unsigned char>(std::clamp(std::round(value), 0.0, 255.0));
+  const std::vector<float>& normal = normal_table();
+  for (int v = 0; v < height_; ++v) {
+    const std::size_t start = random.index(normal.size() - static_cast<std::size_t>(width_));
+    for (int u = 0; u < width_; ++u) {
+      const std::size_t i = static_cast<std::size_t>(v * width_ + u);
+      const double value = static_cast<double>(light_[i]) +
+                           noise * static_cast<double>(normal[start + static_cast<std::size_t>(u)]);
+      image.bitmap[i] = static_cast<unsigned char>(std::clamp(std::floor(value + 0.5), 0.0, 255.0));
+    }
   }
   return image;
 }
