@@ -99,8 +99,16 @@ std::vector<std::string> split_path(const std::string& path) {
   return keys;
 }
 
-/// The map at @p key of @p parent, made when it is absent.
+bool names_a_file(const ConfigNode& node) {
+  const auto ending = std::filesystem::path(node.scalar).extension();
+  return node.kind == ConfigNode::Kind::scalar && (ending == ".yaml" || ending == ".yml");
+}
+
+/// The map at a key, for a path that goes on below it: made when it is absent, and loaded when the
+/// value is the name of a file.
 ConfigNode& step_into(ConfigNode& parent, const std::string& key, const SourceLocation& where) {
+  for (auto& [name, value] : parent.entries)
+    if (name == key && names_a_file(*value)) value = load_named_config(*value);
   ConfigNode* child = parent.find(key);
   if (child == nullptr) {
     auto made = std::make_shared<ConfigNode>();
@@ -139,6 +147,14 @@ NodePtr load_config(const std::filesystem::path& file) {
 NodePtr parse_config(const std::string& text, const std::string& name) {
   std::vector<std::filesystem::path> chain{std::filesystem::weakly_canonical(name)};
   return resolve(text, name, chain);
+}
+
+NodePtr load_named_config(const ConfigNode& name) {
+  const auto folder = name.where.line > 0 ? std::filesystem::path(name.where.file).parent_path()
+                                          : std::filesystem::path();
+  const auto file = (folder / name.scalar).lexically_normal();
+  read_config_text(file, name.where);  // so that a missing file is reported where it is named
+  return load_config(file);
 }
 
 void set_config(ConfigNode& root, const std::string& assignment) {

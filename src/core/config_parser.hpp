@@ -18,6 +18,10 @@ std::shared_ptr<ConfigNode> parse_yaml(const std::string& bytes, const SourceLoc
 /// asked for; unknown: the file itself) unless it is a regular file that can be read.
 std::string read_config_text(const std::filesystem::path& file, const SourceLocation& wanted_at);
 
+/// Loads the file that a value names: relative to the file in which the value was written, or, for
+/// a value of the command line (it has no line), to the working directory.
+std::shared_ptr<ConfigNode> load_named_config(const ConfigNode& name);
+
 /// Whether a text read back as a plain (unquoted) scalar is that text and no null.
 bool is_plain_text(const std::string& text);
 

@@ -340,14 +340,9 @@ std::vector<MapReader> MapReader::maps(const std::string& key) {
 MapReader MapReader::map_or_file(const std::string& key) {
   const ConfigNode& asked = require(key);
   if (asked.kind == ConfigNode::Kind::scalar) {
-    // A value of the command line has no line; its names are relative to the working directory.
-    const auto folder = asked.where.line > 0 ? std::filesystem::path(asked.where.file).parent_path()
-                                             : std::filesystem::path();
-    const auto file = (folder / asked.scalar).lexically_normal();
     if (asked.scalar.empty())
       ValueError(path(key)).fail(asked, "must be a map or the name of a file");
-    read_config_text(file, asked.where);
-    const NodePtr loaded = load_config(file);
+    const NodePtr loaded = load_named_config(asked);
     for (auto& entry : node_->entries) {
       if (entry.first == key) entry.second = loaded;
     }

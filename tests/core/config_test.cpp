@@ -110,6 +110,8 @@ TEST(Config, AliasesAreCopiesThatRememberWhereTheyStand) {
   EXPECT_EQ(root->find("a")->find("k")->scalar, "1");
 }
 
+class SetConfigFiles : public ConfigFiles {};
+
 TEST(SetConfig, ReplacesAValueAtADottedPath) {
   const auto root = parse_config("version: 1\nplanner: {policy: fuzzy, limit_m: 1}\n", "x.yaml");
   set_config(*root, "planner.policy=nearest");
@@ -124,6 +126,18 @@ TEST(SetConfig, MakesTheMapsOnItsWay) {
   set_config(*root, "a.b.c=[1, 2]");
   set_config(*root, "null_map.x=1");
   EXPECT_EQ(dump_config(*root), "version: 1\nnull_map:\n  x: 1\na:\n  b:\n    c: [1, 2]\n");
+}
+
+TEST_F(SetConfigFiles, StepsIntoTheFileThatAValueNames) {
+  write("robots/r.yaml", "version: 1\nhead: {rate: 1}\nname: r\n");
+  const auto root = load_config(write("missions/m.yaml", "version: 1\nrobot: ../robots/r.yaml\n"));
+  set_config(*root, "robot.head.rate=2");
+  EXPECT_EQ(dump_config(*root), "version: 1\nrobot:\n  head:\n    rate: 2\n  name: r\n");
+}
+
+TEST_F(SetConfigFiles, ReportsAFileOnItsWayThatIsMissing) {
+  const auto root = load_config(write("m.yaml", "version: 1\nrobot: none.yaml\n"));
+  EXPECT_THAT(input_error([&] { set_config(*root, "robot.head=2"); }), HasSubstr("none.yaml"));
 }
 
 TEST(SetConfig, TakesWholeMapsAndKeepsWhatStandsAfterTheFirstEqualsSign) {

@@ -105,5 +105,24 @@ TEST(Odometry, VariancesGrowWithDistanceAndTurn) {
   EXPECT_NEAR(covariance(1, 1), 0.02 * 0.02 * 1.5, 1e-18);
 }
 
+TEST(ChordIncrement, BringsOnePoseToTheOther) {
+  const Pose2 before{1.0, 2.0, 0.3};
+  for (const auto& [v, w] : {std::pair{0.3, 0.5}, {-0.2, 0.4}, {0.3, 0.0}, {0.25, -2.0}}) {
+    const auto arc = arc_increment(v, w, Stamp{0}, Stamp::from_seconds(0.4));
+    const Pose2 after = move(before, arc);
+    const auto chord = chord_increment(before, after, w * 0.4, arc.from, arc.to);
+    EXPECT_NEAR(chord.rot1, arc.rot1, 1e-12);
+    EXPECT_NEAR(chord.trans, arc.trans, 1e-12);
+    EXPECT_NEAR(chord.rot2, arc.rot2, 1e-12);
+  }
+}
+
+TEST(ChordIncrement, HasNoDirectionOfItsOwnWhenTheBaseTurnsOnTheSpot) {
+  const auto u = chord_increment({1.0, 2.0, 0.3}, {1.0, 2.0 + 1e-15, 0.5}, 0.2, Stamp{0}, Stamp{1});
+  EXPECT_DOUBLE_EQ(u.rot1, 0.1);
+  EXPECT_DOUBLE_EQ(u.rot2, 0.1);
+  EXPECT_DOUBLE_EQ(u.trans, 0.0);
+}
+
 }  // namespace
 }  // namespace vigia

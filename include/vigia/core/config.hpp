@@ -44,7 +44,8 @@ std::shared_ptr<ConfigNode> load_config(const std::filesystem::path& file);
 std::shared_ptr<ConfigNode> parse_config(const std::string& text, const std::string& name);
 
 /// Sets a value at a dotted path as `--set a.b=value` does; the value is YAML. Maps on the way are
-/// made; a list or scalar on the way is an error.
+/// made; the name of a YAML file on the way is replaced by its content; a list or another scalar on
+/// the way is an error.
 void set_config(ConfigNode& root, const std::string& assignment);
 
 /// Writes the tree as YAML with `version: 1`; read back, it gives the same tree.
