@@ -64,6 +64,7 @@ class CorrelationTracker::State {
 
   CorrelationTrackerParameters parameters_;
   DiscFinder finder_;
+  EdgeFitter fitter_;
   bool tracking_ = false;
   double sign_ = 1.0;  ///< +1 for a dark disc
   EllipseShape shape_;
@@ -93,11 +94,14 @@ EllipseFeature CorrelationTracker::State::refine(const vpImage<unsigned char>& i
     if (distance > parameters_.gate_sigmas * parameters_.gate_sigmas)
       return lost(FeatureStatus::wrong_object, score);
   }
-  if (std::abs(match.contrast) < parameters_.finder.min_contrast)
-    return lost(FeatureStatus::low_contrast, score);
-  if (match.agreement < parameters_.finder.min_occluded_agreement)
-    return lost(FeatureStatus::wrong_object, score);
-  if (match.agreement < parameters_.min_agreement) return lost(FeatureStatus::occluded, score);
+  // A correlation over all pixels hardly tells a hidden arc, another form or a cut outline.
+  const EdgeFit outline =
+      fitter_.fit(image, window, match.shape,
+                  {match.ground - match.contrast, match.ground, parameters_.blur_px});
+  const FeatureStatus judged = judge_fit(outline, parameters_.finder);
+  if (judged != FeatureStatus::found) return lost(judged, score);
+  if ((outline.shape.centre - c).norm() > parameters_.max_outline_offset_px)
+    return lost(FeatureStatus::occluded, score);
 
   EllipseFeature feature;
   feature.status = FeatureStatus::found;

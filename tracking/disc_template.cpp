@@ -1,7 +1,6 @@
 #include "disc_template.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <Eigen/Cholesky>
@@ -71,13 +70,6 @@ class BlurredDisc {
   double axis_;
   double blur_;
 };
-
-constexpr int kSectors = 16;
-
-std::size_t sector_of(const Eigen::Vector2d& p) {
-  const double turn = (std::atan2(p.y(), p.x()) + kPi) / (2.0 * kPi) * kSectors;
-  return static_cast<std::size_t>(std::clamp(static_cast<int>(turn), 0, kSectors - 1));
-}
 
 }  // namespace
 
@@ -197,6 +189,7 @@ TemplateMatch match_template(const vpImage<unsigned char>& image, const imaging:
     if (grey_variance <= n * kQuantisationVariance || model_variance <= 0.0) return match;
     match.correlation = -covariance / std::sqrt(grey_variance * model_variance);
     match.contrast = -gain;
+    match.ground = offset;
     const double residual_squares =
         std::max(sums.squares - levels.dot(sums.product.tail<2>()), 0.0);
     const double variance =
@@ -229,30 +222,6 @@ TemplateMatch match_template(const vpImage<unsigned char>& image, const imaging:
     resting = movement < kRest;
   }
 
-  // The sectors' residuals, for what a correlation over all pixels does not tell.
-  std::array<double, kSectors> square{};
-  std::array<int, kSectors> pixels{};
-  const BlurredDisc disc(match.shape, parameters.blur_px);
-  const double beyond = 1.0 + parameters.margin_px / ellipse_of(match.shape).a;
-  const Eigen::Matrix2d inverse = match.shape.sigma.inverse();
-  for (int v = window.v; v < window.bottom(); ++v)
-    for (int u = window.u; u < window.right(); ++u) {
-      const Eigen::Vector2d p = Eigen::Vector2d(u, v) - match.shape.centre;
-      const double level = std::sqrt(p.dot(inverse * p));
-      if (level > beyond || level < 2.0 - beyond) continue;
-      const double r = image[static_cast<unsigned>(v)][u] - gain * disc.at(u, v).share - offset;
-      const std::size_t k = sector_of(p);
-      square[k] += r * r;
-      ++pixels[k];
-    }
-  for (std::size_t k = 0; k < kSectors; ++k) square[k] /= std::max(1, pixels[k]);
-  std::array<double, kSectors> sorted = square;
-  std::nth_element(sorted.begin(), sorted.begin() + kSectors / 2, sorted.end());
-  const double limit = std::max(
-      {9.0 * sorted[kSectors / 2], kQuantisationVariance, std::pow(0.12 * match.contrast, 2)});
-  int good = 0;
-  for (std::size_t k = 0; k < kSectors; ++k) good += square[k] <= limit ? 1 : 0;
-  match.agreement = static_cast<double>(good) / kSectors;
   return match;
 }
 

@@ -42,8 +42,8 @@ struct TemplateMatch {
   Eigen::Matrix<double, 5, 5> covariance = Eigen::Matrix<double, 5, 5>::Identity();
   double correlation = 0.0;  ///< r with the sign of the contrast
   double contrast = 0.0;     ///< ground minus disc, grey levels
+  double ground = 0.0;       ///< grey level
   double noise = 0.0;        ///< grey levels
-  double agreement = 0.0;    ///< share of sectors that agree with the model
 };
 
 struct TemplateMatchParameters {

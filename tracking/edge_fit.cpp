@@ -387,9 +387,16 @@ EdgeFit EdgeFitter::fit(const vpImage<unsigned char>& image, const imaging::Wind
   evaluate();
   if (!iterate(image, bounds)) return result;
 
-  result.agreement = drop_bad_sectors(result.raggedness);
-  if (result.agreement < 1.0) {
-    // Without the bad sectors the ellipse moves; no new band, or they would be back.
+  // Without the sectors that disagree the ellipse moves, and then others may disagree.
+  constexpr int kPasses = 2;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    if (pass > 0) {
+      collect(image, bounds);
+      evaluate();
+    }
+    result.agreement = drop_bad_sectors(result.raggedness);
+    if (result.agreement == 1.0) break;
+    // No new band here, or the bad sectors would be back.
     for (int iteration = 0; iteration < 3; ++iteration) {
       if (count_ < 4 * kUnknowns) return result;
       evaluate();

@@ -58,7 +58,6 @@ std::unique_ptr<EllipseTracker> make_picture_tracker(const std::string& name) {
     CorrelationTrackerParameters parameters;
     parameters.finder = disc;
     parameters.search_margin_px = disc.search_margin_px;
-    parameters.min_agreement = disc.min_agreement;
     return std::make_unique<CorrelationTracker>(parameters);
   }
   return nullptr;

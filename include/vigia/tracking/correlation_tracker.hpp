@@ -19,8 +19,9 @@ struct CorrelationTrackerParameters {
   double search_margin_px = 12.0;   ///< room round the prediction, px
   double max_scale_step = 0.3;      ///< largest change of log size between two frames
   double gate_sigmas = 3.5;         ///< of an acquisition, in the prediction's standard deviations
-  /// Share of the template's sectors that must agree with it; fewer mean occlusion.
-  double min_agreement = 0.9;
+  /// Largest distance of the matched centre from that of the outline alone, px; more means that
+  /// something covers a part.
+  double max_outline_offset_px = 0.5;
   int max_iterations = 12;       ///< of the refinement
   DiscTrackerParameters finder;  ///< how find_all finds its seeds, and the polarity
 };
