@@ -18,9 +18,10 @@ struct DiscScene {
   double contrast = 150.0;
   double noise = 4.0;
   double blur = 0.7;
+  int fine = 3;  ///< of the grid on which the disc is rendered
 
   imaging::ImageFrame expose(const Ellipse& disc, RandomStream& random) const {
-    SyntheticImage image(width, height, ground, blur);
+    SyntheticImage image(width, height, ground, blur, fine);
     image.paint_ellipse(disc, ground - contrast);
     return imaging::ImageFrame(image.expose(noise, random));
   }

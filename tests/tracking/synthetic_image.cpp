@@ -52,10 +52,11 @@ const std::vector<float>& normal_table() {
 
 }  // namespace
 
-SyntheticImage::SyntheticImage(int width, int height, double ground, double blur)
+SyntheticImage::SyntheticImage(int width, int height, double ground, double blur, int fine)
     : width_(width),
       height_(height),
       blur_(blur),
+      fine_scale_(fine),
       light_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
              static_cast<float>(ground)) {}
 
@@ -86,13 +87,13 @@ void SyntheticImage::begin_patch(const Ellipse& extent) {
   const int half = static_cast<int>(std::ceil(extent.a + 5.0 * blur_ + 3.0));
   left_ = static_cast<int>(std::floor(extent.u)) - half;
   top_ = static_cast<int>(std::floor(extent.v)) - half;
-  fine_width_ = fine_height_ = (2 * half + 2) * kFine;
+  fine_width_ = fine_height_ = (2 * half + 2) * fine_scale_;
   fine_.assign(static_cast<std::size_t>(fine_width_) * static_cast<std::size_t>(fine_height_),
                0.0F);
 }
 
 void SyntheticImage::end_patch(double level) {
-  const std::vector<float> kernel = gaussian(std::max(0.1, blur_) * kFine);
+  const std::vector<float> kernel = gaussian(std::max(0.1, blur_) * fine_scale_);
   const int taps = static_cast<int>(kernel.size());
   const int radius = taps / 2;
   across_.assign(fine_.size(), 0.0F);
@@ -111,16 +112,17 @@ void SyntheticImage::end_patch(double level) {
       const float weight = kernel[static_cast<std::size_t>(k)];
       for (int x = 0; x < fine_width_; ++x) out[x] += weight * in[x];
     }
-  for (int y = 0; y < fine_height_ / kFine; ++y)
-    for (int x = 0; x < fine_width_ / kFine; ++x) {
+  for (int y = 0; y < fine_height_ / fine_scale_; ++y)
+    for (int x = 0; x < fine_width_ / fine_scale_; ++x) {
       const int u = left_ + x;
       const int v = top_ + y;
       if (u < 0 || v < 0 || u >= width_ || v >= height_) continue;
       float share = 0.0F;
-      for (int j = 0; j < kFine; ++j)
-        for (int i = 0; i < kFine; ++i)
-          share += fine_[static_cast<std::size_t>((y * kFine + j) * fine_width_ + x * kFine + i)];
-      share /= static_cast<float>(kFine * kFine);
+      for (int j = 0; j < fine_scale_; ++j)
+        for (int i = 0; i < fine_scale_; ++i)
+          share += fine_[static_cast<std::size_t>((y * fine_scale_ + j) * fine_width_ +
+                                                  x * fine_scale_ + i)];
+      share /= static_cast<float>(fine_scale_ * fine_scale_);
       float& light = light_[static_cast<std::size_t>(v * width_ + u)];
       light += share * (static_cast<float>(level) - light);
     }

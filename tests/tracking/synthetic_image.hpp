@@ -16,7 +16,7 @@ namespace vigia::tracking::testing {
 /// do, on a three times finer grid. Nothing here uses the trackers' edge model.
 class SyntheticImage {
  public:
-  SyntheticImage(int width, int height, double ground, double blur = 0.7);
+  SyntheticImage(int width, int height, double ground, double blur = 0.7, int fine = 3);
 
   /// Grain (value noise of two scales) and a slope of light, rms about @p amplitude.
   void add_texture(double amplitude, std::uint64_t seed);
@@ -27,7 +27,7 @@ class SyntheticImage {
     begin_patch(extent);
     for (int y = 0; y < fine_height_; ++y)
       for (int x = 0; x < fine_width_; ++x) {
-        const double d = signed_distance(Eigen::Vector2d(fine_u(x), fine_v(y))) * kFine;
+        const double d = signed_distance(Eigen::Vector2d(fine_u(x), fine_v(y))) * fine_scale_;
         fine_[static_cast<std::size_t>(y * fine_width_ + x)] =
             static_cast<float>(d > 0.5    ? 1.0
                                : d < -0.5 ? 0.0
@@ -52,16 +52,15 @@ class SyntheticImage {
   int height() const { return height_; }
 
  private:
-  static constexpr int kFine = 3;
-
   void begin_patch(const Ellipse& extent);
   void end_patch(double level);
-  double fine_u(int x) const { return left_ + (x + 0.5) / kFine - 0.5; }
-  double fine_v(int y) const { return top_ + (y + 0.5) / kFine - 0.5; }
+  double fine_u(int x) const { return left_ + (x + 0.5) / fine_scale_ - 0.5; }
+  double fine_v(int y) const { return top_ + (y + 0.5) / fine_scale_ - 0.5; }
 
   int width_;
   int height_;
   double blur_;
+  int fine_scale_;
   std::vector<float> light_;
   int left_ = 0;
   int top_ = 0;
