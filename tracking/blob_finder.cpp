@@ -1,5 +1,7 @@
 #include "blob_finder.hpp"
 
+#include "dark_run.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -175,10 +177,8 @@ bool BlobFinder::make_seed(const Chord& chord, Seed& seed) const {
 // Takes the run of dark pixels through (u, v). False when it leaves the limit.
 bool BlobFinder::add_run(int u, int v, const Seed& seed, const Run& from) {
   const unsigned char* row = image_->operator[](static_cast<unsigned>(v));
-  int first = u;
-  int last = u;
-  while (first > window_.u && row[first - 1] < seed.threshold) --first;
-  while (last + 1 < window_.right() && row[last + 1] < seed.threshold) ++last;
+  const int first = dark_run_begin(row, u, window_.u, seed.threshold);
+  const int last = dark_run_end(row, u, window_.right() - 1, seed.threshold);
   const std::uint32_t number = first_fill_ + fills_;
   std::uint32_t* taken = taken_.data() + static_cast<std::size_t>(v) * image_->getWidth();
   std::fill(taken + first, taken + last + 1, number);

@@ -396,6 +396,7 @@ EdgeFit EdgeFitter::fit(const vpImage<unsigned char>& image, const imaging::Wind
     }
     result.agreement = drop_bad_sectors(result.raggedness);
     if (result.agreement == 1.0) break;
+    if (result.agreement < parameters_.min_agreement) return result;
     // No new band here, or the bad sectors would be back.
     for (int iteration = 0; iteration < 3; ++iteration) {
       if (count_ < 4 * kUnknowns) return result;

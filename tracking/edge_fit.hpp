@@ -18,6 +18,8 @@ struct EdgeFitParameters {
   int max_iterations = 8;
   /// A longer band is thinned out to about so many pixels.
   int max_pixels = 1500;
+  /// Below this share of agreeing sectors the fit is given up.
+  double min_agreement = 0.3;
   /// A sector of the outline disagrees when its residual's rms is above both of these: a multiple
   /// of the median sector's, and a fraction of the contrast.
   double sector_noise_ratio = 3.0;

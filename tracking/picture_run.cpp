@@ -45,6 +45,7 @@ std::unique_ptr<EllipseTracker> make_picture_tracker(const std::string& name) {
   disc.polarity = Polarity::either;
   disc.search_margin_px = 20.0;
   // Prints and prints' edges are less perfect than the landmarks of a mission.
+  disc.max_outline_px = 0.6;
   disc.max_raggedness_px = 0.35;
   disc.min_agreement = 0.8;
   if (name == "disc") return std::make_unique<DiscTracker>(disc);

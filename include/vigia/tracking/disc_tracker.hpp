@@ -23,8 +23,8 @@ struct DiscTrackerParameters {
   double min_solidity = 0.95;
   /// Largest rms distance of a blob's outline, and of the fitted outline's sectors (less what the
   /// noise explains), from an ellipse: px, and further px per px of the semi-minor axis.
-  double max_outline_px = 0.45;
-  double max_outline_ratio = 0.02;
+  double max_outline_px = 0.4;
+  double max_outline_ratio = 0.01;
   double max_raggedness_px = 0.18;
   double max_raggedness_ratio = 0.005;
   /// Smallest share of the outline that must agree with a blurred ellipse.
