@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kLag = 3;             // px over which an edge falls or rises
 constexpr int kGroundDistance = 4;  // px outside a chord's end where the ground's level is read
+constexpr int kProfiled = 12;       // px; smaller blobs have too few chords to judge by
 constexpr int kSameThreshold = 12;  // fills this close in threshold give the same blob
 
 double median_of_five(std::array<double, 5> values) {
@@ -163,6 +164,10 @@ bool BlobFinder::make_seed(const Chord& chord, Seed& seed) const {
   const double flat = 0.7 * parameters_.min_axis_ratio;
   if (width < flat * height || height < flat * width) return false;
 
+  const Column column{u, middle, height};
+  if (std::min(width, height) >= kProfiled && !chords_like_ellipse(column, width, seed.threshold))
+    return false;
+
   // The rectangle round a slanting ellipse is larger than its upright chords by up to this much.
   const double ratio = parameters_.min_axis_ratio;
   const double slant = 0.5 * (1.0 + ratio * ratio) / ratio;
@@ -172,6 +177,34 @@ bool BlobFinder::make_seed(const Chord& chord, Seed& seed) const {
   seed.limit = {u_middle - half_width, middle - half_height, 2 * half_width + 1,
                 2 * half_height + 1};
   return true;
+}
+
+// Along the rows of an ellipse the squared chord is a parabola, whatever its slant; tested on four
+// chords through the column and the longest one.
+bool BlobFinder::chords_like_ellipse(const Column& column, int width, int threshold) const {
+  const auto chord = [&](int offset) {
+    const int v = column.v + offset;
+    const unsigned char* row = image_->operator[](static_cast<unsigned>(v));
+    const int first = dark_run_begin(row, column.u, window_.u, threshold);
+    const int last = dark_run_end(row, column.u, window_.right() - 1, threshold);
+    return static_cast<double>(last - first + 1);
+  };
+  const auto mean_square = [&](int offset) {
+    return 0.5 * (std::pow(chord(offset), 2) + std::pow(chord(-offset), 2));
+  };
+  const int near = column.height / 4;
+  const int far = 3 * column.height / 8;
+  const double middle = static_cast<double>(width) * width;
+  const double curvature = (middle - mean_square(far)) / (static_cast<double>(far) * far);
+  const double half = 0.5 * column.height;
+  // Half the ellipse's height squared; a slanting ellipse is higher than its upright chord.
+  constexpr double kLow = 0.75;
+  constexpr double kHigh = 2.5;
+  if (curvature * half * half * kHigh * kHigh < middle ||
+      curvature * half * half * kLow * kLow > middle)
+    return false;
+  const double expected = middle - curvature * near * near;
+  return std::abs(mean_square(near) - expected) < 0.08 * middle + 2.0 * width;
 }
 
 // Takes the run of dark pixels through (u, v). False when it leaves the limit.

@@ -67,11 +67,19 @@ class BlobFinder {
     imaging::Window limit;  ///< the fill is no ellipse when it goes beyond
   };
 
+  /// An upright chord: its column, its middle row and its length.
+  struct Column {
+    int u;
+    int v;
+    int height;
+  };
+
   unsigned char at(int u, int v) const { return (*image_)[static_cast<unsigned>(v)][u]; }
   void scan_row(int v);
   void consider(const Chord& chord);
   bool make_seed(const Chord& chord, Seed& seed) const;
   int reach(int u, int v, int du, int dv, int threshold, int limit) const;
+  bool chords_like_ellipse(const Column& column, int width, int threshold) const;
   void fill(const Seed& seed);
   bool add_run(int u, int v, const Seed& seed, const Run& from);
   bool add_touching(int first, int last, int v, const Seed& seed, const Run& from);

@@ -11,7 +11,7 @@ BlobFinderParameters blob_parameters(const DiscTrackerParameters& parameters) {
   out.min_axis_px = parameters.min_axis_px;
   out.min_axis_ratio = parameters.min_axis_ratio;
   out.min_contrast = parameters.min_contrast;
-  out.row_step = std::clamp(static_cast<int>(1.3 * parameters.min_axis_px), 1, 8);
+  out.row_step = std::clamp(static_cast<int>(1.5 * parameters.min_axis_px), 1, 8);
   return out;
 }
 
