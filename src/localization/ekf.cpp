@@ -1,6 +1,7 @@
 #include "vigia/localization/ekf.hpp"
 
 #include "association.hpp"
+#include "look_smoother.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -14,8 +15,10 @@ namespace vigia::localization {
 namespace {
 
 constexpr int kDof = 3;  // of (u, v, s)
-/// An update whose step is below this (m, rad) has converged.
-constexpr double kConverged = 1e-7;
+/// A look without an image for so long (s) is not linearised anew any more.
+constexpr double kLookPause = 1.0;
+/// Of a look of more events the older half is not linearised anew any more.
+constexpr std::size_t kLookEvents = 250;
 
 double fraction_at(const OdometryIncrement& u, Stamp stamp) {
   return (stamp - u.from).seconds() / (u.to - u.from).seconds();
@@ -43,6 +46,7 @@ EkfLocalizer::EkfLocalizer(LandmarkMap map, const HeadGeometry& geometry, const 
 void EkfLocalizer::reset(Stamp stamp, const Prior& prior) {
   base_ = initial_state(stamp, prior, params_.sensor);
   events_.clear();
+  horizon_ = stamp;
   rejections_ = 0;
   rejected_looks_.clear();
   first_nis_.clear();
@@ -52,10 +56,10 @@ void EkfLocalizer::reset(Stamp stamp, const Prior& prior) {
 
 void EkfLocalizer::predict(const OdometryIncrement& increment) {
   assert(std::isfinite(increment.rot1 + increment.trans + increment.rot2));
-  const std::vector<Fix> ahead = drop_extrapolated();
+  const std::vector<DiscFix> ahead = drop_extrapolated();
   append(increment);
-  for (const Fix& fix : ahead) {
-    const std::vector<Event> later = roll_back(fix.observation.sensor.stamp);
+  for (const DiscFix& fix : ahead) {
+    const std::vector<Event> later = roll_back(fix.sensor.stamp);
     append(fix);
     for (const Event& event : later) append(event.input, event.extrapolated);
   }
@@ -74,12 +78,13 @@ UpdateResult EkfLocalizer::update(const Observation& observation) {
 UpdateResult EkfLocalizer::update_disc(const EllipseObservation& observation) {
   const Stamp stamp = observation.sensor.stamp;
   if (!is_usable(observation)) return {UpdateStatus::degenerate, std::nullopt, 0.0, 0};
-  if (stamp < base_.stamp) return {UpdateStatus::too_late, std::nullopt, 0.0, 0};
+  if (stamp < horizon_) return {UpdateStatus::too_late, std::nullopt, 0.0, 0};
   const std::vector<Event> later = roll_back(stamp);
   const bool first_of_look = state().look != observation.sensor.look;
   const UpdateResult result = match(observation, with_look(state(), observation.sensor.look));
   if (result.status == UpdateStatus::fused)
-    append(Fix{observation, *result.landmark});
+    append(DiscFix{observation.sensor, *map_.find(*result.landmark), measured_disc(observation),
+                   measurement_covariance(observation)});
   else if (!events_.empty() && events_.back().extrapolated)
     events_.pop_back();
   for (const Event& event : later) append(event.input, event.extrapolated);
@@ -100,14 +105,76 @@ UpdateResult EkfLocalizer::match(const EllipseObservation& observation, const Ek
   return {UpdateStatus::fused, best.landmark->id, best.nis, kDof};
 }
 
-void EkfLocalizer::append(const std::variant<OdometryIncrement, Fix>& input, bool extrapolated) {
-  Event event{input, extrapolated, {}};
+void EkfLocalizer::append(const EkfInput& input, bool extrapolated) {
+  Event event{input, extrapolated, state(), events_.empty() ? Window{} : events_.back().window};
   if (const auto* increment = std::get_if<OdometryIncrement>(&input))
-    event.after = propagate(state(), *increment, params_.odometry);
+    move_by(*increment, event);
   else
-    event.after = fuse(state(), std::get<Fix>(input));
+    fuse(std::get<DiscFix>(input), event);
   assert(event.after.mean.allFinite() && event.after.covariance.allFinite());
   events_.push_back(std::move(event));
+}
+
+void EkfLocalizer::move_by(const OdometryIncrement& increment, Event& event) const {
+  event.after = propagate(event.after, increment, params_.odometry);
+  Window& window = event.window;
+  if (window.events > 0) ++window.events;
+  if ((increment.to - window.last_image).seconds() > kLookPause) window = {};
+}
+
+void EkfLocalizer::fuse(const DiscFix& fix, Event& event) const {
+  Window& window = event.window;
+  event.after = with_look(event.after, fix.sensor.look);
+  if (window.events == 0 || window.start.look != fix.sensor.look) {
+    window = {};
+    window.start = event.after;
+  }
+  ++window.events;
+  ++window.images;
+  window.last_image = fix.sensor.stamp;
+  auto smoothed = smooth_look(window.start, inputs_of_look(event), guess_of_look(event),
+                              {geometry_, params_.sensor, params_.odometry}, params_.iterations,
+                              params_.converged);
+  if (!smoothed) {
+    window = {};
+    return;
+  }
+  event.after = smoothed->filtered.back();
+  window.trajectory = std::move(smoothed->trajectory);
+  if (window.events > kLookEvents) {
+    const auto half = static_cast<std::ptrdiff_t>(window.events / 2);
+    window.start = smoothed->filtered[static_cast<std::size_t>(half) - 1];
+    window.trajectory.erase(window.trajectory.begin(), window.trajectory.begin() + half);
+    window.events = window.trajectory.size();
+    window.images =
+        1 + static_cast<int>(std::count_if(
+                events_.end() - static_cast<std::ptrdiff_t>(window.events - 1), events_.end(),
+                [](const Event& e) { return std::holds_alternative<DiscFix>(e.input); }));
+  }
+}
+
+std::vector<const EkfInput*> EkfLocalizer::inputs_of_look(const Event& event) const {
+  const Window& window = event.window;
+  int stride = 1;
+  while (window.images > stride * params_.look_images) stride *= 2;
+  std::vector<const EkfInput*> inputs;
+  int image = 0;
+  for (auto it = events_.end() - static_cast<std::ptrdiff_t>(window.events - 1);
+       it != events_.end(); ++it) {
+    const bool left_out = std::holds_alternative<DiscFix>(it->input) && image++ % stride != 0;
+    inputs.push_back(left_out ? nullptr : &it->input);
+  }
+  inputs.push_back(&event.input);
+  return inputs;
+}
+
+std::vector<Vector6> EkfLocalizer::guess_of_look(const Event& event) const {
+  // As last smoothed; of what came since, as filtered.
+  std::vector<Vector6> guess = event.window.trajectory;
+  const std::size_t first = events_.size() + 1 - event.window.events;
+  for (std::size_t k = guess.size(); k < event.window.events; ++k)
+    guess.push_back(k == 0 ? event.window.start.mean : events_[first + k - 1].after.mean);
+  return guess;
 }
 
 EkfState EkfLocalizer::with_look(const EkfState& state, LookId look) const {
@@ -119,32 +186,6 @@ Eigen::Matrix3d EkfLocalizer::measurement_covariance(const EllipseObservation& o
   Eigen::Matrix3d R = measured_disc_covariance(observation);
   R.diagonal() += floor.cwiseAbs2();
   return R;
-}
-
-EkfState EkfLocalizer::fuse(const EkfState& before, const Fix& fix) const {
-  const SensorSnapshot& sensor = fix.observation.sensor;
-  const EkfState prior = with_look(before, sensor.look);
-  const Eigen::Vector3d z = measured_disc(fix.observation);
-  const Eigen::Matrix3d R0 = measurement_covariance(fix.observation);
-  EkfState posterior = prior;
-  for (int i = 0; i < params_.iterations; ++i) {
-    const auto predicted = predict_disc(*map_.find(fix.landmark), sensor, geometry_,
-                                        posterior.pose(), posterior.bias());
-    if (!predicted) break;
-    // Iterated EKF: linearised at the last estimate, weighed against the prior.
-    const Matrix36 H = state_jacobian(*predicted);
-    const Eigen::Matrix3d R = R0 + reading_covariance(*predicted, params_.sensor);
-    const Eigen::Matrix<double, 6, 3> K = kalman_gain(prior.covariance, H, R);
-    Vector6 moved = posterior.mean - prior.mean;
-    moved(2) = wrap_angle(moved(2));
-    const Vector6 step = K * (z - predicted->z + H * moved) - moved;
-    posterior.mean += step;
-    posterior.covariance = joseph_update(prior.covariance, H, K, R);
-    if (step.cwiseAbs().maxCoeff() < kConverged) break;
-  }
-  posterior.mean.head<3>() = posterior.pose().vector();
-  posterior.stamp = std::max(before.stamp, sensor.stamp);
-  return posterior;
 }
 
 std::vector<EkfLocalizer::Event> EkfLocalizer::roll_back(Stamp stamp) {
@@ -187,19 +228,28 @@ void EkfLocalizer::extrapolate(Stamp stamp) {
   append(motion, true);
 }
 
-std::vector<EkfLocalizer::Fix> EkfLocalizer::drop_extrapolated() {
+std::vector<DiscFix> EkfLocalizer::drop_extrapolated() {
   const auto first = std::find_if(events_.begin(), events_.end(),
                                   [](const Event& event) { return event.extrapolated; });
-  std::vector<Fix> fixes;
+  std::vector<DiscFix> fixes;
   for (auto it = first; it != events_.end(); ++it)
-    if (const auto* fix = std::get_if<Fix>(&it->input)) fixes.push_back(*fix);
+    if (const auto* fix = std::get_if<DiscFix>(&it->input)) fixes.push_back(*fix);
   events_.erase(first, events_.end());
   return fixes;
 }
 
 void EkfLocalizer::forget_old() {
-  const Stamp horizon = state().stamp - Duration::from_seconds(params_.history_s);
-  while (events_.size() > 1 && events_.front().after.stamp < horizon) {
+  const Stamp oldest = state().stamp - Duration::from_seconds(params_.history_s);
+  const auto last = std::prev(events_.end());
+  const auto kept = std::find_if(events_.begin(), last, [oldest](const Event& event) {
+    return !(event.after.stamp < oldest);
+  });
+  if (kept == events_.begin()) return;
+  // A return to the horizon needs the look that was under way there.
+  const Event& before = *std::prev(kept);
+  horizon_ = before.after.stamp;
+  auto forgotten = (kept - events_.begin()) - static_cast<std::ptrdiff_t>(before.window.events);
+  for (; forgotten > 0; --forgotten) {
     base_ = std::move(events_.front().after);
     events_.pop_front();
   }

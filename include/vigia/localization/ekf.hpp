@@ -23,10 +23,16 @@ struct EkfParams {
   double ambiguity_ratio = 20.0;
   /// σ of what the disc's model leaves out, white per frame, added to the tracker's covariance:
   /// centre in px, and relative size.
-  double centre_floor_px = 0.02;
-  double size_floor = 5e-4;
-  /// Gauss–Newton steps of the iterated update: near a landmark one step is not enough.
-  int iterations = 3;
+  double centre_floor_px = 0.002;
+  double size_floor = 5e-5;
+  /// Gauss–Newton steps of an update, at most: near a landmark one step is not enough.
+  int iterations = 4;
+  /// A step that moves the look by less (m, rad) is the last: what is left is of second order,
+  /// below 1e-3 px at a metre from a landmark.
+  double converged = 1e-3;
+  /// How many images of a look are linearised anew at each update, at most. Of more only every
+  /// second, fourth, … is used: they say the same.
+  int look_images = 40;
   /// How late an observation may be, s.
   double history_s = 1.0;
 
@@ -70,24 +76,34 @@ class EkfLocalizer final : public Localizer {
   const EkfState& state() const { return events_.empty() ? base_ : events_.back().after; }
 
  private:
-  struct Fix {
-    EllipseObservation observation;
-    LandmarkId landmark;
+  /// The last events, from a state on: those of the present look, linearised anew together.
+  struct Window {
+    EkfState start;
+    std::size_t events = 0;  ///< 0: no look is under way
+    int images = 0;
+    Stamp last_image;
+    std::vector<Vector6> trajectory;  ///< the smoothed mean before each event, as of last_image
   };
+  /// Values never change once appended: what comes of an observation depends on the sequence of
+  /// inputs up to it alone, not on the order in which they arrived.
   struct Event {
-    std::variant<OdometryIncrement, Fix> input;
+    EkfInput input;
     bool extrapolated = false;
     EkfState after;
+    Window window;
   };
 
   UpdateResult update_disc(const EllipseObservation& observation);
   UpdateResult match(const EllipseObservation& observation, const EkfState& at) const;
-  void append(const std::variant<OdometryIncrement, Fix>& input, bool extrapolated = false);
-  EkfState fuse(const EkfState& before, const Fix& fix) const;
+  void append(const EkfInput& input, bool extrapolated = false);
+  void move_by(const OdometryIncrement& increment, Event& event) const;
+  void fuse(const DiscFix& fix, Event& event) const;
+  std::vector<const EkfInput*> inputs_of_look(const Event& event) const;
+  std::vector<Vector6> guess_of_look(const Event& event) const;
   EkfState with_look(const EkfState& state, LookId look) const;
   std::vector<Event> roll_back(Stamp stamp);
   void extrapolate(Stamp stamp);
-  std::vector<Fix> drop_extrapolated();
+  std::vector<DiscFix> drop_extrapolated();
   void forget_old();
   void watch_innovations(const UpdateResult& result, LookId look, bool first_of_look);
   void refresh_belief();
@@ -102,6 +118,7 @@ class EkfLocalizer final : public Localizer {
 
   EkfState base_;             ///< before the first of events_
   std::deque<Event> events_;  ///< in order of time
+  Stamp horizon_;             ///< what is older comes too late
   Belief belief_;
 
   std::array<int, 6> counts_{};

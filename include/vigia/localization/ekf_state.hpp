@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <variant>
 
 #include <Eigen/Core>
 
@@ -31,6 +32,17 @@ struct EkfState {
   LookBias bias() const { return {mean(3), mean(4), mean(5)}; }
   Eigen::Matrix3d pose_covariance() const { return covariance.topLeftCorner<3, 3>(); }
 };
+
+/// An image of a disc whose landmark is known.
+struct DiscFix {
+  SensorSnapshot sensor;
+  Landmark landmark;
+  Eigen::Vector3d z;  ///< as measured_disc()
+  Eigen::Matrix3d R;  ///< of z in the image; the white part of the readings comes on top
+};
+
+/// What moves the filter on.
+using EkfInput = std::variant<OdometryIncrement, DiscFix>;
 
 /// The state at the start, with the biases of no look yet.
 EkfState initial_state(Stamp stamp, const Prior& prior, const SensorNoise& noise);

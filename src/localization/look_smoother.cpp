@@ -1,0 +1,116 @@
+#include "look_smoother.hpp"
+
+#include <algorithm>
+
+#include <Eigen/Cholesky>
+
+namespace vigia::localization {
+namespace {
+
+/// An input about a point. With S = L Lᵀ the innovation's covariance, an image has G = L⁻¹ H,
+/// W = G P and the whitened innovation y: the update is x + Wᵀ y, P − Wᵀ W.
+struct Linearised {
+  Eigen::Matrix3d dx_dx = Eigen::Matrix3d::Identity();  ///< of an increment, on the pose
+  Matrix36 G = Matrix36::Zero();
+  Matrix36 W = Matrix36::Zero();
+  Eigen::Vector3d y = Eigen::Vector3d::Zero();
+};
+
+Vector6 wrapped(Vector6 difference) {
+  difference(2) = wrap_angle(difference(2));
+  return difference;
+}
+
+/// Moves @p state by an increment linearised at @p at.
+void pass(const OdometryIncrement& u, const Vector6& at, const LookModel& model, EkfState& state,
+          Linearised& about) {
+  const Pose2 pose = Pose2::from_vector(at.head<3>());
+  about.dx_dx = move_jacobian_pose(pose, u);
+  state.mean.head<3>() = move(pose, u).vector() + about.dx_dx * wrapped(state.mean - at).head<3>();
+  state.covariance =
+      propagate_covariance(state.covariance, pose, u, control_covariance(u, model.odometry));
+  state.stamp = u.to;
+}
+
+/// Updates @p state by an image linearised at @p at. False when there is none from there.
+bool pass(const DiscFix& fix, const Vector6& at, const LookModel& model, EkfState& state,
+          Linearised& about) {
+  const auto image = predict_disc(fix.landmark, fix.sensor, model.geometry,
+                                  Pose2::from_vector(at.head<3>()), {at(3), at(4), at(5)});
+  if (!image) return false;
+  const Matrix36 H = state_jacobian(*image);
+  const Matrix36 HP = H * state.covariance;
+  const Eigen::Matrix3d R = fix.R + reading_covariance(*image, model.sensor);
+  const Eigen::LLT<Eigen::Matrix3d> S(HP * H.transpose() + R);
+  about.G = S.matrixL().solve(H);
+  about.W = S.matrixL().solve(HP);
+  about.y = S.matrixL().solve(fix.z - image->z - H * wrapped(state.mean - at));
+  state.mean += about.W.transpose() * about.y;
+  state.covariance -= about.W.transpose() * about.W;
+  state.stamp = std::max(state.stamp, fix.sensor.stamp);
+  return true;
+}
+
+/// The filter linearised about @p trajectory. False when a disc has no image from there.
+bool forward(const EkfState& start, const std::vector<const EkfInput*>& inputs,
+             const std::vector<Vector6>& trajectory, const LookModel& model,
+             std::vector<EkfState>& filtered, std::vector<Linearised>& about) {
+  filtered.clear();
+  about.assign(inputs.size(), {});
+  for (std::size_t k = 0; k < inputs.size(); ++k) {
+    filtered.push_back(k == 0 ? start : filtered.back());
+    if (inputs[k] == nullptr) continue;
+    const auto apply = [&](const auto& input) {
+      return pass(input, trajectory[k], model, filtered[k], about[k]);
+    };
+    if (const auto* u = std::get_if<OdometryIncrement>(inputs[k]))
+      apply(*u);
+    else if (!apply(std::get<DiscFix>(*inputs[k])))
+      return false;
+  }
+  return true;
+}
+
+/// The smoothed mean before each input, x − P λ with the adjoint λ of all that comes after.
+std::vector<Vector6> backward(const EkfState& start, const std::vector<EkfState>& filtered,
+                              const std::vector<Linearised>& about) {
+  std::vector<Vector6> smoothed(about.size());
+  Vector6 adjoint = Vector6::Zero();
+  for (std::size_t k = about.size(); k-- > 0;) {
+    const Linearised& input = about[k];
+    const EkfState& before = k == 0 ? start : filtered[k - 1];
+    adjoint -= input.G.transpose() * (input.W * adjoint + input.y);
+    adjoint.head<3>() = (input.dx_dx.transpose() * adjoint.head<3>()).eval();
+    smoothed[k] = before.mean - before.covariance * adjoint;
+  }
+  return smoothed;
+}
+
+double largest_move(const std::vector<Vector6>& from, const std::vector<Vector6>& to) {
+  double largest = 0.0;
+  for (std::size_t k = 0; k < from.size(); ++k)
+    largest = std::max(largest, wrapped(to[k] - from[k]).cwiseAbs().maxCoeff());
+  return largest;
+}
+
+}  // namespace
+
+std::optional<SmoothedLook> smooth_look(const EkfState& start,
+                                        const std::vector<const EkfInput*>& inputs,
+                                        std::vector<Vector6> guess, const LookModel& model,
+                                        int iterations, double converged) {
+  SmoothedLook look{{}, std::move(guess)};
+  look.filtered.reserve(inputs.size());
+  std::vector<Linearised> about;
+  for (int i = 0; i < iterations; ++i) {
+    if (!forward(start, inputs, look.trajectory, model, look.filtered, about)) return std::nullopt;
+    std::vector<Vector6> smoothed = backward(start, look.filtered, about);
+    const double moved = largest_move(look.trajectory, smoothed);
+    look.trajectory = std::move(smoothed);
+    if (moved < converged) break;
+  }
+  for (EkfState& state : look.filtered) state.mean.head<3>() = state.pose().vector();
+  return look;
+}
+
+}  // namespace vigia::localization
