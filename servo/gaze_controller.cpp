@@ -1,6 +1,6 @@
 #include "vigia/servo/gaze_controller.hpp"
 
-#include "slew_law.hpp"
+#include "vigia/servo/slew_law.hpp"
 
 #include <algorithm>
 #include <cmath>

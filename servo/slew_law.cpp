@@ -1,4 +1,4 @@
-#include "slew_law.hpp"
+#include "vigia/servo/slew_law.hpp"
 
 #include <algorithm>
 #include <cmath>

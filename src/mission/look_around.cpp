@@ -1,6 +1,6 @@
 #include "look_around.hpp"
 
-#include "../../servo/slew_law.hpp"
+#include "vigia/servo/slew_law.hpp"
 
 #include <algorithm>
 #include <cmath>

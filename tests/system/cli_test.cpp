@@ -162,7 +162,11 @@ INSTANTIATE_TEST_SUITE_P(
         WrongMission{"StartOutside", "start.position_m=[-3, 1]", "does not fit"},
         WrongMission{"GoalInTheWall", "route.goal_m=[11.99, 6.99]", "does not fit"},
         WrongMission{"GoalOutside", "route.goal_m=[40, 1]", "does not fit"},
-        WrongMission{"NoPassage", "route.clearance_m=4.9", ""},
+        WrongMission{"NoPassage",
+                     "world.obstacles=[{polygon_m: [[4.5, 0], [4.7, 0], [4.7, 4.1], [4.5, 4.1]], "
+                     "height_m: 2}, {polygon_m: [[4.5, 4.3], [4.7, 4.3], [4.7, 7], [4.5, 7]], "
+                     "height_m: 2}]",
+                     "no route"},
         WrongMission{"NegativeRate", "rate_hz=-25", "-25"},
         WrongMission{"TextForNumber", "timeout_s=soon", "soon"},
         WrongMission{"NotANumber", "timeout_s=.nan", "timeout_s"},
@@ -172,7 +176,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongMission{"ListForMap", "planner=[1, 2]", "planner"},
         WrongMission{"MissingWorld", "world=nowhere.yaml", "nowhere.yaml"},
         WrongMission{"ZoomTableOfOne", "robot.zoom.table=[{zoom_mm: 8, focal_px: 600}]", "zoom"}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& mission) { return mission.param.name; });
 
 }  // namespace
 }  // namespace vigia

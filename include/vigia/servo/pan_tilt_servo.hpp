@@ -8,7 +8,7 @@
 namespace vigia::servo {
 
 struct PanTiltServoParams {
-  double gain = 4.0;         ///< 1/s, exponential decay of the image error
+  double gain = 8.0;         ///< 1/s, exponential decay of the image error
   bool feed_forward = true;  ///< compensate the base's motion
   /// A command holds this long, s: the compensation is that of the interval's middle. 0: of now.
   double hold_s = 0.04;
