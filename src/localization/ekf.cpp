@@ -50,7 +50,12 @@ void EkfLocalizer::reset(Stamp stamp, const Prior& prior) {
   rejections_ = 0;
   rejected_looks_.clear();
   first_nis_.clear();
-  innovations_say_lost_ = false;
+  said_lost_ = false;
+  refresh_belief();
+}
+
+void EkfLocalizer::lose() {
+  said_lost_ = true;
   refresh_belief();
 }
 
@@ -269,7 +274,7 @@ void EkfLocalizer::watch_innovations(const UpdateResult& result, LookId look, bo
   const bool rejected = rejections_ >= params_.lost_rejections &&
                         rejected_looks_.size() >= static_cast<std::size_t>(params_.lost_looks);
   const bool unlikely = std::accumulate(first_nis_.begin(), first_nis_.end(), 0.0) > nis_limit_;
-  innovations_say_lost_ = innovations_say_lost_ || rejected || unlikely;
+  said_lost_ = said_lost_ || rejected || unlikely;
 }
 
 void EkfLocalizer::refresh_belief() {
@@ -277,7 +282,7 @@ void EkfLocalizer::refresh_belief() {
   belief_.stamp = now.stamp;
   belief_.pose = now.pose();
   belief_.covariance = now.pose_covariance();
-  const bool lost = innovations_say_lost_ || belief_.position_sigma() > params_.lost_sigma_m;
+  const bool lost = said_lost_ || belief_.position_sigma() > params_.lost_sigma_m;
   belief_.status = lost ? BeliefStatus::lost : BeliefStatus::tracking;
 }
 

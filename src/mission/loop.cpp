@@ -170,6 +170,7 @@ void Loop::localize(const EllipseObservation& observation) {
     rejected_in_a_row_ = 0;
     if (!look_fused_) scheduler_.fused(travelled_m_);
     look_fused_ = true;
+    failed_in_a_row_ = 0;
     return;
   }
   if (result.status == localization::UpdateStatus::unsupported) return;
@@ -185,16 +186,19 @@ void Loop::plan() {
   const Stopwatch watch;
   if (rejected_in_a_row_ >= setup_.look.rejections_to_drop)
     drop_look("the filter rejects what is tracked");
+  if (failed_in_a_row_ >= setup_.look.failures_to_lose) localizers_[primary_]->lose();
   if (belief().status == BeliefStatus::lost) {
     begin_recovery();
     return;
   }
   const auto demand = scheduler_.demand(now_, belief(), travelled_m_);
-  const bool stop = demand == planner::LookDemand::stopped;
+  // A landmark that is not where the belief has it is reason enough to stand still.
+  const bool stop = demand == planner::LookDemand::stopped || failed_in_a_row_ > 0;
   if (stop != stopped_to_look_)
     tell(stop ? "stop" : "restart", {{"sigma_m", belief().position_sigma()}});
   stopped_to_look_ = stop;
-  if (demand != planner::LookDemand::none && gaze_.state() == GazeState::idle) {
+  const bool wanted = stop || demand != planner::LookDemand::none;
+  if (wanted && gaze_.state() == GazeState::idle) {
     if (const auto order = scheduler_.choose(now_, belief(), head_, pilot_.station())) {
       look_ = order->look;
       look_fused_ = false;
@@ -214,7 +218,7 @@ void Loop::drop_look(const std::string& reason) {
   const auto order = gaze_.current();
   rejected_in_a_row_ = 0;
   if (!order) return;
-  scheduler_.failed(now_, order->landmark);
+  note_failure(order->landmark);
   tell("dropped",
        {{"look", static_cast<double>(look_)}, {"landmark", static_cast<double>(order->landmark)}},
        {{"reason", reason}});
@@ -252,12 +256,17 @@ void Loop::steer() {
   simulator_.robot().command(command_, output.command);
 }
 
+void Loop::note_failure(LandmarkId landmark) {
+  scheduler_.failed(now_, landmark);
+  ++failed_in_a_row_;
+}
+
 void Loop::tell_gaze(servo::GazeEvent event, LandmarkId landmark) {
   if (event == servo::GazeEvent::acquired)
     acquired_ = now_;
   else
     acquired_.reset();
-  if (event == servo::GazeEvent::expired) scheduler_.failed(now_, landmark);
+  if (event == servo::GazeEvent::expired) note_failure(landmark);
   // "lost" alone is said of the belief.
   tell(event == servo::GazeEvent::lost ? "target_lost" : std::string(to_string(event)),
        {{"look", static_cast<double>(look_)}, {"landmark", static_cast<double>(landmark)}});

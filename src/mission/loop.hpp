@@ -37,6 +37,7 @@ class Loop {
   void begin_recovery();
   void relocalize();
   void replan(const Pose2& from);
+  void note_failure(LandmarkId landmark);
   void drop_look(const std::string& reason);
   void tell_gaze(servo::GazeEvent event, LandmarkId landmark);
   std::optional<Outcome> outcome() const;
@@ -76,6 +77,7 @@ class Loop {
   LookId look_ = 0;
   std::optional<Stamp> acquired_;
   int rejected_in_a_row_ = 0;
+  int failed_in_a_row_ = 0;  ///< looks that ended without anything fused
   bool look_fused_ = false;
 
   bool recovering_ = false;

@@ -10,6 +10,7 @@ void Loop::begin_recovery() {
   request_ = servo::TrackRequest::none;
   acquired_.reset();
   recovering_ = true;
+  failed_in_a_row_ = 0;
   sweep_ = {};
   look_ = scheduler_.next_look();
   simulator_.robot().begin_look();

@@ -29,6 +29,9 @@ void read_ekf(MapReader reader, const sim::RobotParams& robot, localization::Ekf
   params.centre_floor_px = reader.number("centre_floor_px", {0.0, 10.0}, params.centre_floor_px);
   params.size_floor = reader.number("size_floor", {0.0, 1.0}, params.size_floor);
   params.iterations = static_cast<int>(reader.integer("iterations", {1, 20}, params.iterations));
+  params.look_images =
+      static_cast<int>(reader.integer("look_images", {1, 10000}, params.look_images));
+  params.converged = reader.number("converged", {1e-12, 1.0}, params.converged);
   params.history_s = reader.number("history_s", {0.0, 60.0}, params.history_s);
   params.lost_sigma_m = reader.number("lost_sigma_m", {0.01, 100.0}, params.lost_sigma_m);
   params.lost_rejections =
@@ -71,6 +74,8 @@ void read_look(MapReader& reader, LookParams& params) {
   params.exclude_s = reader.number("exclude_s", {0.0, 600.0}, params.exclude_s);
   params.rejections_to_drop =
       static_cast<int>(reader.integer("rejections_to_drop", {1, 1000}, params.rejections_to_drop));
+  params.failures_to_lose = static_cast<int>(
+      reader.integer("failures_to_lose", {1, 1000}, params.failures_to_lose));
   reader.finish();
 }
 

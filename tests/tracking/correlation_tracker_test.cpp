@@ -60,7 +60,6 @@ TEST(CorrelationTracker, TheTemplateFollowsGrowthAndTurning) {
 }
 
 TEST(CorrelationTracker, BelowTheAcceptanceThresholdThereIsNoMatch) {
-  DiscScene scene;
   RandomStream random(23, "acceptance");
   const Ellipse disc{50.0, 50.0, 15.0, 13.0, 0.0};
   SyntheticImage image(100, 100, 200.0);

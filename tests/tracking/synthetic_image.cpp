@@ -74,11 +74,11 @@ void SyntheticImage::add_texture(double amplitude, std::uint64_t seed) {
         const float x = static_cast<float>(u % cell) / static_cast<float>(cell);
         const float y = static_cast<float>(v % cell) / static_cast<float>(cell);
         const auto at = [&](int column, int row) {
-          return lattice[static_cast<std::size_t>(row * columns + column)];
+          return lattice[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+                         static_cast<std::size_t>(column)];
         };
-        light_[static_cast<std::size_t>(v * width_ + u)] +=
-            (1 - x) * (1 - y) * at(i, j) + x * (1 - y) * at(i + 1, j) + (1 - x) * y * at(i, j + 1) +
-            x * y * at(i + 1, j + 1);
+        light_[pixel(u, v)] += (1 - x) * (1 - y) * at(i, j) + x * (1 - y) * at(i + 1, j) +
+                               (1 - x) * y * at(i, j + 1) + x * y * at(i + 1, j + 1);
       }
   }
 }
@@ -120,10 +120,9 @@ void SyntheticImage::end_patch(double level) {
       float share = 0.0F;
       for (int j = 0; j < fine_scale_; ++j)
         for (int i = 0; i < fine_scale_; ++i)
-          share += fine_[static_cast<std::size_t>((y * fine_scale_ + j) * fine_width_ +
-                                                  x * fine_scale_ + i)];
+          share += fine_[fine_pixel(x * fine_scale_ + i, y * fine_scale_ + j)];
       share /= static_cast<float>(fine_scale_ * fine_scale_);
-      float& light = light_[static_cast<std::size_t>(v * width_ + u)];
+      float& light = light_[pixel(u, v)];
       light += share * (static_cast<float>(level) - light);
     }
 }
@@ -220,7 +219,7 @@ vpImage<unsigned char> SyntheticImage::expose(double noise, RandomStream& random
   for (int v = 0; v < height_; ++v) {
     const std::size_t start = random.index(normal.size() - static_cast<std::size_t>(width_));
     for (int u = 0; u < width_; ++u) {
-      const std::size_t i = static_cast<std::size_t>(v * width_ + u);
+      const std::size_t i = pixel(u, v);
       const double value = static_cast<double>(light_[i]) +
                            noise * static_cast<double>(normal[start + static_cast<std::size_t>(u)]);
       image.bitmap[i] = static_cast<unsigned char>(std::clamp(std::floor(value + 0.5), 0.0, 255.0));

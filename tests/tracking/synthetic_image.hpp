@@ -28,10 +28,7 @@ class SyntheticImage {
     for (int y = 0; y < fine_height_; ++y)
       for (int x = 0; x < fine_width_; ++x) {
         const double d = signed_distance(Eigen::Vector2d(fine_u(x), fine_v(y))) * fine_scale_;
-        fine_[static_cast<std::size_t>(y * fine_width_ + x)] =
-            static_cast<float>(d > 0.5    ? 1.0
-                               : d < -0.5 ? 0.0
-                                          : d + 0.5);
+        fine_[fine_pixel(x, y)] = static_cast<float>(d > 0.5 ? 1.0 : d < -0.5 ? 0.0 : d + 0.5);
       }
     end_patch(level);
   }
@@ -52,6 +49,14 @@ class SyntheticImage {
   int height() const { return height_; }
 
  private:
+  std::size_t pixel(int u, int v) const {
+    return static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(u);
+  }
+  std::size_t fine_pixel(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(fine_width_) +
+           static_cast<std::size_t>(x);
+  }
   void begin_patch(const Ellipse& extent);
   void end_patch(double level);
   double fine_u(int x) const { return left_ + (x + 0.5) / fine_scale_ - 0.5; }

@@ -69,6 +69,7 @@ class EkfLocalizer final : public Localizer {
   void predict(const OdometryIncrement& increment) override;
   UpdateResult update(const Observation& observation) override;
   const Belief& belief() const override { return belief_; }
+  void lose() override;
 
   /// How many updates ended with this status since the construction.
   int count(UpdateStatus status) const { return counts_[static_cast<std::size_t>(status)]; }
@@ -125,7 +126,7 @@ class EkfLocalizer final : public Localizer {
   int rejections_ = 0;
   std::set<LookId> rejected_looks_;
   std::deque<double> first_nis_;
-  bool innovations_say_lost_ = false;
+  bool said_lost_ = false;
 };
 
 }  // namespace vigia::localization

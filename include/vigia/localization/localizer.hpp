@@ -40,6 +40,8 @@ class Localizer {
   virtual void predict(const OdometryIncrement& increment) = 0;
   virtual UpdateResult update(const Observation& observation) = 0;
   virtual const Belief& belief() const = 0;
+  /// Perception says that what the belief predicts is not there: lost until the next reset().
+  virtual void lose() = 0;
 };
 
 }  // namespace vigia::localization

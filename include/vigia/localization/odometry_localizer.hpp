@@ -15,6 +15,7 @@ class OdometryLocalizer final : public Localizer {
   void predict(const OdometryIncrement& increment) override;
   UpdateResult update(const Observation& observation) override;
   const Belief& belief() const override { return belief_; }
+  void lose() override { belief_.status = BeliefStatus::lost; }
 
  private:
   OdometryNoise noise_;

@@ -31,6 +31,7 @@ struct LookParams {
   double radius_px = 24.0;     ///< apparent semi-major axis that the zoom holds
   double exclude_s = 5.0;      ///< how long a landmark that failed is left out
   int rejections_to_drop = 5;  ///< gated frames in a row after which a look is given up
+  int failures_to_lose = 3;    ///< looks in a row that showed nothing, after which belief is lost
 };
 
 /// How the robot looks around once it is lost.
