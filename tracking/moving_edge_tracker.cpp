@@ -248,7 +248,7 @@ MovingEdgeTracker::MovingEdgeTracker(const MovingEdgeTrackerParameters& paramete
 MovingEdgeTracker::~MovingEdgeTracker() = default;
 
 EllipseFeature MovingEdgeTracker::acquire(Canvas& canvas, const EllipsePrediction& prediction) {
-  const EllipseFeature seed = state_->seeds_.acquire(canvas, prediction);
+  EllipseFeature seed = state_->seeds_.acquire(canvas, prediction);
   if (seed.status != FeatureStatus::found) return seed;
   const EllipseShape shape = shape_of(seed.ellipse);
   return state_->follow(canvas, shape, shape);
