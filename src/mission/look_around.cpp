@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kAtStop = from_deg(0.3);
 constexpr double kAtRest = from_deg(0.5);  // per second
+constexpr double kFromStop = from_deg(3);  // an encoder that is a little off may never read the end
 
 }  // namespace
 
@@ -18,11 +19,12 @@ void LookAround::begin(const HeadReading& head) {
   const Intrinsics wide = setup_.robot.zoom.at(setup_.robot.zoom.min_zoom_mm());
   const double field = 2.0 * std::atan(0.5 * wide.width / wide.px);
   const double step = setup_.recovery.step_fraction * field;
-  const double span = limits.pan_max - limits.pan_min;
+  const double first = limits.pan_min + kFromStop;
+  const double span = limits.pan_max - kFromStop - first;
   const int count = 1 + static_cast<int>(std::ceil(span / step));
   stops_.clear();
   for (int i = 0; i < count; ++i)
-    stops_.push_back({limits.pan_min + span * i / (count - 1), setup_.recovery.tilt});
+    stops_.push_back({first + span * i / (count - 1), setup_.recovery.tilt});
   if (head.angles.pan > 0.5 * (limits.pan_min + limits.pan_max))
     std::reverse(stops_.begin(), stops_.end());
   stop_ = 0;

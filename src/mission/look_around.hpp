@@ -23,7 +23,9 @@ class LookAround {
   bool ready(Stamp now, const HeadReading& head);
   /// A picture was taken: on to the next stop. False when that was the last.
   bool next();
+  /// How many sweeps were begun since the robot last knew where it was.
   int sweeps() const { return sweeps_; }
+  void found() { sweeps_ = 0; }
 
  private:
   const MissionSetup& setup_;

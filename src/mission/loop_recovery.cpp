@@ -43,6 +43,7 @@ void Loop::relocalize() {
     const auto& best = found.hypotheses.front();
     localizers_[primary_]->reset(now_, {best.pose, best.covariance});
     recovering_ = false;
+    look_around_.found();
     tell("recovered", {{"x_m", best.pose.x},
                        {"y_m", best.pose.y},
                        {"theta_rad", best.pose.theta},
