@@ -1,11 +1,10 @@
 #include "vigia/servo/gaze_controller.hpp"
 
-#include "vigia/servo/slew_law.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 #include "vigia/core/odometry.hpp"
+#include "vigia/servo/slew_law.hpp"
 
 namespace vigia::servo {
 namespace {

@@ -1,9 +1,9 @@
 #include "look_around.hpp"
 
-#include "vigia/servo/slew_law.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "vigia/servo/slew_law.hpp"
 
 namespace vigia::mission {
 namespace {

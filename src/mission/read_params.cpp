@@ -74,8 +74,8 @@ void read_look(MapReader& reader, LookParams& params) {
   params.exclude_s = reader.number("exclude_s", {0.0, 600.0}, params.exclude_s);
   params.rejections_to_drop =
       static_cast<int>(reader.integer("rejections_to_drop", {1, 1000}, params.rejections_to_drop));
-  params.failures_to_lose = static_cast<int>(
-      reader.integer("failures_to_lose", {1, 1000}, params.failures_to_lose));
+  params.failures_to_lose =
+      static_cast<int>(reader.integer("failures_to_lose", {1, 1000}, params.failures_to_lose));
   reader.finish();
 }
 
