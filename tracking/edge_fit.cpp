@@ -100,7 +100,7 @@ void EdgeFitter::collect(const vpImage<unsigned char>& image, const imaging::Win
       kPi * ((ellipse.a + half_width) * (ellipse.b + half_width) -
              (has_hole ? (ellipse.a - half_width) * (ellipse.b - half_width) : 0.0));
   const int thinning = std::max(1, static_cast<int>(std::ceil(area / parameters_.max_pixels)));
-  const auto capacity = static_cast<Eigen::Index>(1.1 * area / thinning + 256.0);
+  const Eigen::Index capacity = padded(static_cast<int>(1.1 * area / thinning) + 256);
   if (u_.size() < capacity) {
     u_.resize(capacity);
     v_.resize(capacity);
@@ -151,92 +151,57 @@ void EdgeFitter::collect(const vpImage<unsigned char>& image, const imaging::Win
 }
 
 void EdgeFitter::evaluate() {
-  const auto n = static_cast<Eigen::Index>(count_);
+  const int n = count_;
   const double determinant = shape_.sigma.determinant();
-  const auto a11 = static_cast<float>(shape_.sigma(1, 1) / determinant);
-  const auto a12 = static_cast<float>(-shape_.sigma(0, 1) / determinant);
-  const auto a22 = static_cast<float>(shape_.sigma(0, 0) / determinant);
-  const Eigen::Vector2f shift = (shape_.centre - band_shape_.centre).cast<float>();
-  const auto blur = static_cast<float>(profile_.blur);
+  const OutlineConstants outline{static_cast<float>(shape_.centre.x() - band_shape_.centre.x()),
+                                 static_cast<float>(shape_.centre.y() - band_shape_.centre.y()),
+                                 static_cast<float>(shape_.sigma(1, 1) / determinant),
+                                 static_cast<float>(-shape_.sigma(0, 1) / determinant),
+                                 static_cast<float>(shape_.sigma(0, 0) / determinant),
+                                 static_cast<float>(1.0 / determinant),
+                                 static_cast<float>(profile_.blur)};
   const auto contrast = static_cast<float>(profile_.ground - profile_.disc);
   const auto ground = static_cast<float>(profile_.ground);
-  const auto inverse_determinant = static_cast<float>(1.0 / determinant);
+  const OutlinePlaces places{work_.col(0).data(), work_.col(1).data(), work_.col(2).data(),
+                             work_.col(3).data(), t_.data()};
+  place_pixels(outline, u_.data(), v_.data(), n, places);
 
-  auto x = work_.col(0).head(n);
-  auto y = work_.col(1).head(n);
-  auto nx = work_.col(2).head(n);
-  auto ny = work_.col(3).head(n);
-  auto slope = work_.col(4).head(n);
-  auto d = work_.col(5).head(n);
-  x = u_.head(n) - shift.x();
-  y = v_.head(n) - shift.y();
-
-  // The first-order distance to the outline, then once more from the foot point that it leads to:
-  // third order in distance times curvature.
-  const auto gradient_at = [&] {
-    nx = a11 * x + a12 * y;
-    ny = a12 * x + a22 * y;
-    slope = (nx.square() + ny.square()).sqrt().max(1e-9F).inverse();
-    t_.head(n) = (x * nx + y * ny).sqrt();
-    t_.head(n) *= (1.0F - t_.head(n)) * slope;
-    nx *= slope;
-    ny *= slope;
-  };
-  gradient_at();
-  d = t_.head(n);
-  x += d * nx;
-  y += d * ny;
-  gradient_at();
-  d += t_.head(n);
-
-  // h = support function of the outline at its normal, curvature = h³/det Σ.
-  auto& h = slope;
-  h = (x * nx + y * ny).max(0.1F);
-  auto curvature = x;
-  curvature = h.cube() * inverse_determinant;
-  t_.head(n) = (d - (0.5F * blur * blur) * curvature) * (1.0F / blur);
-
-  auto density = y;
+  float* density = work_.col(4).data();
+  float* share = jacobian_.col(kContrast).data();
   const NormalTable& table = normal_table();
-  for (Eigen::Index i = 0; i < n; ++i) {
+  for (int i = 0; i < n; ++i) {
     const NormalTable::Value value = table.at(t_[i]);
-    jacobian_(i, 6) = -value.integral;
+    share[i] = -value.integral;
     density[i] = value.density;
+    residual_[i] = grey_[i] - ground + contrast * value.integral;
   }
-  residual_.head(n) = grey_.head(n) - ground - contrast * jacobian_.col(6).head(n);
-
-  // ∂g/∂d, then the outline's movement with centre and Σ: ∂d/∂c = n, ∂d/∂Σ = n nᵀ/(2h).
-  jacobian_.col(7).head(n) = (contrast / blur) * density * (t_.head(n) + blur * curvature);
-  density *= -contrast / blur;
-  jacobian_.col(0).head(n) = density * nx;
-  jacobian_.col(1).head(n) = density * ny;
-  density *= h.inverse();
-  jacobian_.col(2).head(n) = (0.5F * density) * nx.square();
-  jacobian_.col(3).head(n) = density * nx * ny;
-  jacobian_.col(4).head(n) = (0.5F * density) * ny.square();
+  differentiate_edge(places, density, contrast, outline.blur, n, columns());
+  jacobian_.col(kGround).head(n).setOnes();
+  const int padding = padded(n) - n;
+  jacobian_.middleRows(n, padding).setZero();
+  residual_.segment(n, padding).setZero();
 }
 
-// Jᵀr of the model as evaluated last. Column 5 of J is ∂g/∂G = 1 and never stored.
+JacobianColumns EdgeFitter::columns() {
+  JacobianColumns out{};
+  for (int i = 0; i < kUnknowns; ++i) out[static_cast<std::size_t>(i)] = jacobian_.col(i).data();
+  return out;
+}
+
+// Jᵀr of the model as evaluated last.
 void EdgeFitter::project_residual() {
-  const auto residual = residual_.head(count_).matrix();
+  const auto sums = gradient_sums(columns(), residual_.data(), padded(count_));
   for (int i = 0; i < kUnknowns; ++i)
-    gradient_[i] = static_cast<double>(
-        i == kGround ? residual.sum() : jacobian_.col(i).head(count_).matrix().dot(residual));
+    gradient_[i] = static_cast<double>(sums[static_cast<std::size_t>(i)]);
 }
 
 // JᵀJ and Jᵀr of the model as evaluated last.
 void EdgeFitter::accumulate() {
   project_residual();
-  for (int i = 0; i < kUnknowns; ++i) {
-    if (i == kGround) continue;
-    const auto column = jacobian_.col(i).head(count_).matrix();
-    normal_(i, kGround) = normal_(kGround, i) = static_cast<double>(column.sum());
-    for (int j = 0; j <= i; ++j)
-      if (j != kGround)
-        normal_(i, j) = normal_(j, i) =
-            static_cast<double>(column.dot(jacobian_.col(j).head(count_).matrix()));
-  }
-  normal_(kGround, kGround) = count_;
+  const auto sums = normal_sums(columns(), padded(count_));
+  std::size_t k = 0;
+  for (int i = 0; i < kUnknowns; ++i)
+    for (int j = 0; j <= i; ++j, ++k) normal_(i, j) = normal_(j, i) = static_cast<double>(sums[k]);
 }
 
 // Applies one Gauss–Newton step, shortened where it is out of proportion. False when the ellipse

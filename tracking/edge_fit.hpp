@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ellipse_shape.hpp"
+#include "outline_loops.hpp"
 
 #include <vector>
 
@@ -70,13 +71,16 @@ class EdgeFitter {
 
  private:
   static constexpr int kUnknowns = 8;
-  static constexpr int kGround = 5;  // column of the ground level
+  // Columns of the Jacobian.
+  static constexpr int kGround = 5;
+  static constexpr int kContrast = 6;
   static constexpr int kSectors = 24;
   using Normal = Eigen::Matrix<double, kUnknowns, kUnknowns>;
   using Vector = Eigen::Matrix<double, kUnknowns, 1>;
 
   void collect(const vpImage<unsigned char>& image, const imaging::Window& bounds);
   void evaluate();
+  JacobianColumns columns();
   void project_residual();
   void accumulate();
   bool step();
