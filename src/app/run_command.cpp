@@ -5,6 +5,7 @@
 
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,7 @@ namespace {
 
 struct RunOptions {
   std::string mission;
-  std::uint64_t seed = 1;
+  std::optional<std::uint64_t> seed;
   std::string out;
   std::vector<std::string> overrides;
   bool json = false;
@@ -45,16 +46,18 @@ void print_summary(const evaluation::DriveScore& score, const std::string& folde
 }
 
 int run(const RunOptions& options) {
-  const mission::MissionSetup setup = mission::load_mission(options.mission, options.overrides);
+  std::vector<std::string> overrides = options.overrides;
+  if (options.seed) overrides.push_back(fmt::format("seed={}", *options.seed));
+  const mission::MissionSetup setup = mission::load_mission(options.mission, overrides);
   const std::string out =
-      options.out.empty() ? fmt::format("runs/{}-{}", setup.name, options.seed) : options.out;
+      options.out.empty() ? fmt::format("runs/{}-{}", setup.name, setup.seed) : options.out;
   mission::RunFolder folder(out);
   evaluation::DriveScorer scorer;
   DrivePicture picture;
   FrameAlbum album;
   Progress progress(options.quiet || options.json);
   const auto outcome =
-      mission::run_mission(setup, options.seed, {&scorer, &picture, &album, &progress, &folder});
+      mission::run_mission(setup, setup.seed, {&scorer, &picture, &album, &progress, &folder});
   const std::string summary = evaluation::summary_json(scorer.score());
   folder.folder().add("summary.json", summary);
   folder.folder().make("frames");
@@ -74,8 +77,7 @@ void add_run(CLI::App& app, int& status) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand("run", "Run one mission and write its run folder");
   command->add_option("mission", options->mission, "Mission file (YAML)")->required();
-  command->add_option("--seed", options->seed, "Seed of every random stream")
-      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Seed of every random stream");
   command->add_option("--out", options->out, "Run folder (default runs/<mission>-<seed>)");
   command
       ->add_option("--set", options->overrides,

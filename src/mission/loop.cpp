@@ -258,7 +258,7 @@ void Loop::steer() {
 
 void Loop::note_failure(LandmarkId landmark) {
   scheduler_.failed(now_, landmark);
-  ++failed_in_a_row_;
+  if (!look_fused_) ++failed_in_a_row_;
 }
 
 void Loop::tell_gaze(servo::GazeEvent event, LandmarkId landmark) {

@@ -101,6 +101,7 @@ MissionSetup load_mission(const std::filesystem::path& file,
   setup.robot = sim::read_robot_setup(robot);
   robot.finish();
 
+  setup.seed = static_cast<std::uint64_t>(mission.integer("seed", {0, 9e15}, 1));
   const double rate = mission.number("rate_hz", {5.0, 200.0}, 25.0);
   setup.tick_s = 1.0 / rate;
   setup.timeout_s = mission.number("timeout_s", {1.0, 1e5}, setup.timeout_s);

@@ -68,7 +68,7 @@ TEST_F(Program, PrintsTheSummaryAndNothingElseOnStdoutWithJson) {
 }
 
 TEST_F(Program, RepeatsARunFromItsResolvedMission) {
-  ASSERT_EQ(vigia(short_run(dir_.path() / "first")).status, 1);
+  ASSERT_EQ(vigia(short_run(dir_.path() / "first") + " --seed 9").status, 1);
   const auto resolved = dir_.path() / "first/mission.yaml";
   const auto result =
       vigia("run " + resolved.string() + " --quiet --out " + (dir_.path() / "again").string());
@@ -144,6 +144,10 @@ struct WrongMission {
   const char* override_;  ///< a `--set` that spoils the mission
   const char* message;    ///< part of what is said
 };
+
+void PrintTo(const WrongMission& mission, std::ostream* out) {
+  *out << mission.name;
+}
 
 class WrongMissions : public Program, public ::testing::WithParamInterface<WrongMission> {};
 

@@ -42,9 +42,10 @@ struct RecoveryParams {
   int sweeps = 3;               ///< given up (outcome stuck) after so many without a result
 };
 
-/// A mission, validated: everything that a run needs but the seed.
+/// A mission, validated.
 struct MissionSetup {
   std::string name;
+  std::uint64_t seed = 1;  ///< of a single run; an evaluation brings its own
   WorldMap world;
   std::shared_ptr<const sim::Appearance> appearance;
   sim::RobotSetup robot;
