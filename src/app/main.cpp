@@ -1,5 +1,6 @@
 #include "commands.hpp"
 
+#include <cstdio>
 #include <exception>
 
 #include <CLI/CLI.hpp>
@@ -21,9 +22,7 @@ void log_to_stderr() {
   spdlog::set_default_logger(logger);
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run_program(int argc, char** argv) {
   log_to_stderr();
   cv::setNumThreads(1);
   CLI::App app{
@@ -49,6 +48,17 @@ int main(int argc, char** argv) {
     return kWrongInput;
   } catch (const std::exception& error) {
     spdlog::critical("unexpected: {}", error.what());
+    return kBroken;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run_program(argc, argv);
+  } catch (...) {
+    std::fputs("vigia: unexpected failure\n", stderr);
     return kBroken;
   }
 }
