@@ -2,10 +2,13 @@
 
 #include "read_params.hpp"
 
+#include <algorithm>
+
 namespace vigia::mission {
 namespace {
 
 constexpr Range kMetres{-1e4, 1e4};
+constexpr double kLeastRoute_m = 0.01;
 
 void read_start(MapReader start, const sim::RobotSetup& robot, MissionSetup& setup) {
   const Eigen::Vector2d position = start.vector2("position_m", kMetres);
@@ -45,6 +48,10 @@ void read_route(MapReader route, MissionSetup& setup) {
   if (route.has("via_m"))
     for (const auto& via : route.points2("via_m", kMetres, 0)) setup.waypoints.push_back(via);
   setup.waypoints.push_back(route.vector2("goal_m", kMetres));
+  const bool moves = std::any_of(
+      setup.waypoints.begin(), setup.waypoints.end(),
+      [&](const auto& p) { return (p - setup.waypoints.front()).norm() > kLeastRoute_m; });
+  if (!moves) throw route.error("goal_m", "the route ends where it starts: nothing to drive");
   setup.route.robot_radius_m = setup.robot.robot.radius_m;
   setup.route.clearance_m = route.number("clearance_m", {0.0, 5.0}, setup.route.clearance_m);
   setup.route.iterations =
@@ -72,7 +79,7 @@ void read_localization(MapReader localization, MissionSetup& setup) {
   localization.finish();
 }
 
-void check_fixed_landmark(MapReader look, const MissionSetup& setup) {
+void check_fixed_landmark(const MapReader& look, const MissionSetup& setup) {
   if (setup.look.policy != "fixed") return;
   if (!setup.look.fixed_landmark)
     throw look.error("policy", "the policy \"fixed\" needs the key fixed_landmark");

@@ -203,6 +203,7 @@ INSTANTIATE_TEST_SUITE_P(
                      "height_m: 2}, {polygon_m: [[4.5, 4.3], [4.7, 4.3], [4.7, 7], [4.5, 7]], "
                      "height_m: 2}]",
                      "no route"},
+        WrongMission{"NowhereToGo", "route={goal_m: [1.0, 3.4]}", "nothing to drive"},
         WrongMission{"NegativeRate", "rate_hz=-25", "-25"},
         WrongMission{"TextForNumber", "timeout_s=soon", "soon"},
         WrongMission{"NotANumber", "timeout_s=.nan", "timeout_s"},
