@@ -27,7 +27,7 @@ endfunction()
 
 function(vigia_test module)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LABELS" ${ARGN})
-  set(properties TIMEOUT 300)
+  set(properties TIMEOUT 900)
   if(ARG_LABELS)
     list(APPEND properties LABELS ${ARG_LABELS})
   endif()
