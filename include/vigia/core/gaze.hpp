@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string_view>
 
 #include "vigia/core/landmark.hpp"
@@ -15,7 +16,9 @@ struct GazeOrder {
   Stamp issued;
   Stamp expires;            ///< without a feature by then, the order ends as failed
   double dwell_s = 1.0;     ///< how long the landmark is watched once it is tracked
-  double radius_px = 24.0;  ///< apparent semi-major axis that the zoom holds
+  double radius_px = 24.0;  ///< apparent semi-major axis that the zoom holds …
+  /// … unless the plan has set a zoom, which then stays as it is while the landmark fits the image.
+  std::optional<double> zoom_mm;
 };
 
 /// What the gaze does now.

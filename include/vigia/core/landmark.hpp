@@ -7,6 +7,8 @@
 
 #include <Eigen/Geometry>
 
+#include "vigia/core/colour_pattern.hpp"
+
 namespace vigia {
 
 using LandmarkId = int;
@@ -16,12 +18,18 @@ struct DiscShape {
   double radius_m = 0.1;
 };
 
+/// An AprilTag of the family 36h11.
+struct TagShape {
+  int tag = 0;          ///< 0–586, the number that the tag shows
+  double side_m = 0.2;  ///< of the black square's outer edge
+};
+
 /// A landmark of the map. Frame l lies in the landmark's centre: z is the outward normal (towards
 /// the viewer), y points up, x to the viewer's right: (x, y) is the picture as a viewer sees it.
 struct Landmark {
   LandmarkId id = 0;
   Eigen::Isometry3d wMl = Eigen::Isometry3d::Identity();
-  std::variant<DiscShape> shape;
+  std::variant<DiscShape, PatternShape, TagShape> shape;
 
   Eigen::Vector3d centre_w() const { return wMl.translation(); }
   Eigen::Vector3d normal_w() const { return wMl.linear().col(2); }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <variant>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -48,8 +49,26 @@ struct EllipseObservation {
   Eigen::Matrix<double, 5, 5> covariance = Eigen::Matrix<double, 5, 5>::Identity();
 };
 
+/// One point of a landmark, known by its label, in the image.
+struct LabelledPoint {
+  int label = 0;
+  Eigen::Vector2d uv = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Identity();  ///< px²
+};
+
+/// The image of a landmark that says who it is: the dots of a colour pattern (labels as
+/// PatternDot, uv the centre of the dot's ellipse), the corners of a tag (0 lower left, 1 lower
+/// right, 2 upper right, 3 upper left, as the tag's reader sees them).
+struct PointsObservation {
+  SensorSnapshot sensor;
+  std::optional<LandmarkId> expected;  ///< asked for
+  LandmarkId landmark = 0;             ///< read from the image, and of the map
+  std::vector<LabelledPoint> points;
+  double confidence = 1.0;  ///< of the identity, in [0, 1]
+};
+
 /// What tracking hands to localization: closed by the geometry of the feature.
-using Observation = std::variant<EllipseObservation>;
+using Observation = std::variant<EllipseObservation, PointsObservation>;
 
 /// The snapshot that came with an observation.
 const SensorSnapshot& sensor_of(const Observation& observation);

@@ -63,14 +63,13 @@ struct GazeOutput {
 /// the landmark is released and the gaze is idle; an order that passes its expiry without a feature
 /// ends as expired.
 ///
-/// | state   | does                                      | ends |
-/// |---------|-------------------------------------------|-------------------------------------------|
-/// | idle    | head and zoom rest                        | order() → slew | | slew    | head and
-/// zoom go where belief has it      | both there → acquire                      | | acquire | holds
-/// the aim; asks for the landmark      | seen → track; acquire_s → search          | | track   |
-/// servo on the image, zoom holds the size   | dwell_s → released; lost_grace_s → lost   | | lost
-/// | holds the aim where it was last seen      | seen → track; acquire_s → search          | |
-/// search  | spiral about the aim, the zoom widening   | seen → track; search_s → expired |
+/// - idle: head and zoom rest; order() → slew.
+/// - slew: head and zoom go where the belief has the landmark; both there → acquire.
+/// - acquire: holds the aim, asks for the landmark; seen → track, after acquire_s → search.
+/// - track: servo on the image, the zoom holds the size; after dwell_s → released (idle), unseen
+///   for lost_grace_s → lost.
+/// - lost: holds the aim where it was last seen; seen → track, after acquire_s → search.
+/// - search: spiral about the aim, the zoom widening; seen → track, after search_s → expired.
 ///
 /// From acquire and lost the gaze returns to slew when the aim is farther than half the field from
 /// the head (the pan's stop lies between, or the belief has jumped). In every state but track and
