@@ -141,8 +141,7 @@ double GazeController::wanted_focal(const GazeInput& input, const Landmark& land
                                     const Eigen::Vector3d& p_r) const {
   const Eigen::Vector3d p_h = p_r - geometry_.mount_r;
   const double range = p_h.norm();
-  // Where a landmark of another shape says nothing of its size, the zoom stays wide.
-  const double radius = disc_radius(landmark).value_or(range);
+  const double radius = extent_radius(landmark);
 
   // Bearing of the landmark from the head against (x, y, θ) of the base, in the base's axes.
   const double planar2 = std::max(p_h.head<2>().squaredNorm(), 1e-6);
@@ -249,7 +248,7 @@ GazeOutput GazeController::search(const GazeInput& input, const Landmark& landma
   goal.tilt = std::clamp(goal.tilt, limits_.tilt_min, limits_.tilt_max);
 
   const double range = (aim.p_r - geometry_.mount_r).norm();
-  const double smallest = params_.search_radius_px * range / disc_radius(landmark).value_or(range);
+  const double smallest = params_.search_radius_px * range / extent_radius(landmark);
   GazeOutput output;
   output.command = drive(input, aim, goal, std::min(aim.focal_px, smallest));
   output.request = TrackRequest::acquire;

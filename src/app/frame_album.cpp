@@ -17,8 +17,11 @@ report::Overlay overlay_of(const mission::Tick& tick) {
   report::Overlay overlay;
   overlay.predicted = tick.predicted;
   if (tick.observation != nullptr) {
-    const Intrinsics& camera = tick.observation->sensor.intrinsics;
-    overlay.measured = tick.observation->ellipse;
+    const Intrinsics& camera = sensor_of(*tick.observation).intrinsics;
+    if (const auto* disc = std::get_if<EllipseObservation>(tick.observation))
+      overlay.measured = disc->ellipse;
+    if (const auto* seen = std::get_if<PointsObservation>(tick.observation))
+      for (const LabelledPoint& point : seen->points) overlay.points.push_back(point.uv);
     overlay.principal_point = Eigen::Vector2d(camera.u0, camera.v0);
   }
   overlay.lines.push_back(

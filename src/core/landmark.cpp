@@ -20,6 +20,13 @@ std::optional<double> disc_radius(const Landmark& landmark) {
   return std::nullopt;
 }
 
+double extent_radius(const Landmark& landmark) {
+  if (const auto* pattern = std::get_if<PatternShape>(&landmark.shape))
+    return pattern->outer_radius_m + pattern->dot_radius_m;
+  if (const auto* tag = std::get_if<TagShape>(&landmark.shape)) return tag->side_m / std::sqrt(2.0);
+  return std::get<DiscShape>(landmark.shape).radius_m;
+}
+
 LandmarkMap::LandmarkMap(std::vector<Landmark> landmarks) : landmarks_(std::move(landmarks)) {
   std::sort(landmarks_.begin(), landmarks_.end(),
             [](const Landmark& a, const Landmark& b) { return a.id < b.id; });

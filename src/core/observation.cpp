@@ -1,6 +1,41 @@
 #include "vigia/core/observation.hpp"
 
+#include <algorithm>
+
 namespace vigia {
+namespace {
+
+/// How far the point of that label lies from the landmark's centre, as a share of extent_radius().
+double share_of_extent(int label, const Landmark& landmark) {
+  const auto* pattern = std::get_if<PatternShape>(&landmark.shape);
+  if (pattern == nullptr || label == 0) return 1.0;
+  const double ring = label <= kDotsPerRing ? pattern->outer_radius_m : pattern->inner_radius_m;
+  return ring / extent_radius(landmark);
+}
+
+Eigen::Vector2d centre_of(const std::vector<LabelledPoint>& points) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const LabelledPoint& point : points) sum += point.uv;
+  return sum / static_cast<double>(std::max<std::size_t>(points.size(), 1));
+}
+
+ImageExtent extent_of(const PointsObservation& seen, const Landmark* landmark) {
+  ImageExtent extent{centre_of(seen.points), 0.0};
+  for (const LabelledPoint& point : seen.points) {
+    const double share = landmark == nullptr ? 1.0 : share_of_extent(point.label, *landmark);
+    extent.radius_px = std::max(extent.radius_px, (point.uv - extent.centre).norm() / share);
+  }
+  return extent;
+}
+
+}  // namespace
+
+ImageExtent image_extent(const Observation& observation, const Landmark* landmark) {
+  if (const auto* points = std::get_if<PointsObservation>(&observation))
+    return extent_of(*points, landmark);
+  const Ellipse& ellipse = std::get<EllipseObservation>(observation).ellipse;
+  return {{ellipse.u, ellipse.v}, ellipse.a};
+}
 
 const SensorSnapshot& sensor_of(const Observation& observation) {
   return std::visit([](const auto& seen) -> const SensorSnapshot& { return seen.sensor; },

@@ -84,12 +84,12 @@ void DriveScorer::Impl::score_localizer(const mission::Tick& tick, std::size_t i
   sum.bound.predict(tick.true_pose_before, u, control_covariance(u, setup->robot.robot.odometry));
   const bool fused = update && update->status == localization::UpdateStatus::fused;
   if (update) ++count_of(sum.score, update->status);
-  if (fused && update->landmark) {
+  const auto* disc = std::get_if<EllipseObservation>(tick.observation);
+  if (fused && update->landmark && disc != nullptr) {
     const auto& angle = tick.truth.look_angle_error;
-    sum.bound.update(tick.truth.pose, *setup->world.landmarks.find(*update->landmark),
-                     tick.observation->sensor,
+    sum.bound.update(tick.truth.pose, *setup->world.landmarks.find(*update->landmark), disc->sensor,
                      {angle.pan, angle.tilt, tick.truth.look_log_focal_error},
-                     localization::measured_disc_covariance(*tick.observation));
+                     localization::measured_disc_covariance(*disc));
   }
   const Eigen::Vector3d error = difference(belief.pose, tick.truth.pose);
   const double squared = error.head<2>().squaredNorm();

@@ -112,8 +112,9 @@ void Loop::tick() {
 
   std::optional<double> centring;
   if (observation_ && acquired_)
-    centring = std::hypot(observation_->ellipse.u - sensor_.intrinsics.u0,
-                          observation_->ellipse.v - sensor_.intrinsics.v0);
+    centring = (image_extent(*observation_).centre -
+                Eigen::Vector2d(sensor_.intrinsics.u0, sensor_.intrinsics.v0))
+                   .norm();
   const Tick told{now_,
                   simulator_.robot().truth(),
                   before,
@@ -123,7 +124,7 @@ void Loop::tick() {
                   recovering_ ? GazeState::search : gaze_.state(),
                   gaze_.current(),
                   look_,
-                  sighting_ ? std::optional(sighting_->feature.status) : std::nullopt,
+                  sighting_ ? std::optional(sighting_->status) : std::nullopt,
                   observation_ ? &*observation_ : nullptr,
                   centring,
                   acquired_ ? (now_ - *acquired_).seconds() : 0.0,
@@ -154,12 +155,10 @@ void Loop::watch(const imaging::Frame& frame) {
   const Stopwatch watch;
   sighting_ = watcher_.watch(frame, request_, sensor_, belief(), *landmark);
   timing_.track += watch.elapsed_ms();
-  if (sighting_->feature.status != tracking::FeatureStatus::found) return;
-  observation_ = EllipseObservation{sensor_, order->landmark, sighting_->feature.ellipse,
-                                    sighting_->feature.covariance};
+  observation_ = sighting_->observation;
 }
 
-void Loop::localize(const EllipseObservation& observation) {
+void Loop::localize(const Observation& observation) {
   const Stopwatch watch;
   for (std::size_t i = 0; i < localizers_.size(); ++i)
     localizer_ticks_[i].update = localizers_[i]->update(observation);
@@ -177,7 +176,7 @@ void Loop::localize(const EllipseObservation& observation) {
   if (rejected_in_a_row_++ == 0)
     tell("rejected",
          {{"look", static_cast<double>(look_)},
-          {"landmark", static_cast<double>(observation.expected.value_or(-1))},
+          {"landmark", static_cast<double>(gaze_.current()->landmark)},
           {"nis", result.nis}},
          {{"reason", std::string(to_string(result.status))}});
 }
@@ -242,9 +241,7 @@ void Loop::steer() {
   const auto order = gaze_.current();
   servo::GazeInput input{
       now_, head_, expected, belief(), setup_.world.landmarks, sensor_.intrinsics, std::nullopt};
-  if (observation_)
-    input.sighting = servo::GazeSighting{{observation_->ellipse.u, observation_->ellipse.v},
-                                         observation_->ellipse.a};
+  if (observation_ && order) input.sighting = gaze_sighting(*observation_, order->landmark);
   const servo::GazeOutput output = gaze_.step(input);
   timing_.servo += watch.elapsed_ms();
   if (order) {
@@ -254,6 +251,11 @@ void Loop::steer() {
   }
   request_ = output.request;
   simulator_.robot().command(command_, output.command);
+}
+
+servo::GazeSighting Loop::gaze_sighting(const Observation& observation, LandmarkId landmark) const {
+  const ImageExtent extent = image_extent(observation, setup_.world.landmarks.find(landmark));
+  return {extent.centre, extent.radius_px};
 }
 
 void Loop::note_failure(LandmarkId landmark) {

@@ -30,7 +30,7 @@ class Loop {
   void tick();
   void predict();
   void watch(const imaging::Frame& frame);
-  void localize(const EllipseObservation& observation);
+  void localize(const Observation& observation);
   void plan();
   void steer();
   void recover(const imaging::Frame& frame);
@@ -41,6 +41,7 @@ class Loop {
   void drop_look(const std::string& reason);
   void tell_gaze(servo::GazeEvent event, LandmarkId landmark);
   std::optional<Outcome> outcome() const;
+  servo::GazeSighting gaze_sighting(const Observation& observation, LandmarkId landmark) const;
 
   using Texts = std::vector<std::pair<std::string, std::string>>;
   using Numbers = std::vector<std::pair<std::string, double>>;
@@ -86,7 +87,7 @@ class Loop {
   // What this tick tells its listeners.
   std::vector<LocalizerTick> localizer_ticks_;
   std::optional<Sighting> sighting_;
-  std::optional<EllipseObservation> observation_;
+  std::optional<Observation> observation_;
   TickTiming timing_;
 };
 

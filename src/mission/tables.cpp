@@ -50,17 +50,25 @@ void put_state(Buffer& line, const Tick& tick) {
       tick.odometry.rot2, tick.base_command.v, tick.base_command.w, tick.station_m);
 }
 
+/// Centre, and of an ellipse its axes, of other features their radius.
+void put_feature(Buffer& line, const Observation* seen) {
+  if (seen == nullptr) {
+    put(line, ",,,,,,");
+  } else if (const auto* disc = std::get_if<EllipseObservation>(seen)) {
+    const Ellipse& e = disc->ellipse;
+    put(line, ",{:.4f},{:.4f},{:.4f},{:.4f},{:.5f},", e.u, e.v, e.a, e.b, e.psi);
+  } else {
+    const ImageExtent extent = image_extent(*seen);
+    put(line, ",{:.4f},{:.4f},{:.4f},,,", extent.centre.x(), extent.centre.y(), extent.radius_px);
+  }
+}
+
 void put_gaze(Buffer& line, const Tick& tick) {
   put(line, ",{},", to_string(tick.gaze));
   if (tick.order) put(line, "{}", tick.order->landmark);
   put(line, ",{},{},", tick.look, tick.stopped_to_look ? 1 : 0);
   if (tick.feature) put(line, "{}", tracking::to_string(*tick.feature));
-  if (const auto* seen = tick.observation) {
-    const Ellipse& e = seen->ellipse;
-    put(line, ",{:.4f},{:.4f},{:.4f},{:.4f},{:.5f},", e.u, e.v, e.a, e.b, e.psi);
-  } else {
-    put(line, ",,,,,,");
-  }
+  put_feature(line, tick.observation);
   if (tick.centring_px) put(line, "{:.4f}", *tick.centring_px);
 }
 

@@ -42,14 +42,19 @@ Sighting Watcher::watch(const imaging::Frame& frame, servo::TrackRequest request
   Sighting sighting;
   if (prediction) sighting.predicted = prediction->ellipse;
   canvas_.attach(frame);
+  tracking::EllipseFeature feature;
   if (request == servo::TrackRequest::track) {
     if (prediction && settled_)
       tracker_->expect_motion(Eigen::Vector2d(prediction->ellipse.u, prediction->ellipse.v) -
                               *settled_);
-    sighting.feature = tracker_->track(canvas_);
+    feature = tracker_->track(canvas_);
   } else if (prediction) {
-    sighting.feature = tracker_->acquire(canvas_, *prediction);
+    feature = tracker_->acquire(canvas_, *prediction);
   }
+  sighting.status = feature.status;
+  if (feature.status == tracking::FeatureStatus::found)
+    sighting.observation =
+        EllipseObservation{sensor, landmark.id, feature.ellipse, feature.covariance};
   return sighting;
 }
 

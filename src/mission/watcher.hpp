@@ -15,8 +15,9 @@ namespace vigia::mission {
 
 /// What the tracker found in a frame, and what was expected of it.
 struct Sighting {
-  tracking::EllipseFeature feature;
-  std::optional<Ellipse> predicted;
+  tracking::FeatureStatus status = tracking::FeatureStatus::not_found;
+  std::optional<Observation> observation;  ///< when found
+  std::optional<Ellipse> predicted;        ///< outline
 };
 
 /// Turns the gaze's request into a call of the tracker: predicts the landmark's image from the

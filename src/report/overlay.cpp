@@ -60,6 +60,10 @@ void draw_on(const Sheet& sheet, const Overlay& overlay, double width) {
     draw_cross(sheet, on_sheet(overlay.measured->u, overlay.measured->v), 3.0 * unit,
                {palette::kSkyBlue, 1.2 * unit});
   }
+  for (const Eigen::Vector2d& point : overlay.points)
+    if (point.allFinite())
+      draw_cross(sheet, on_sheet(point.x(), point.y()), 3.0 * unit,
+                 {palette::kSkyBlue, 1.2 * unit});
   const Font font{std::max(10.0, 14.0 * unit), true};
   double y = 6.0 * unit;
   for (const std::string& line : overlay.lines) {

@@ -50,6 +50,29 @@ TEST(Landmark, TellsTheRadiusOfItsDisc) {
   EXPECT_EQ(disc_radius(disc(1)), 0.12);
 }
 
+TEST(Landmark, ItsExtentHoldsAllOfItsFeatures) {
+  EXPECT_EQ(extent_radius(disc(1)), 0.12);
+  Landmark other = disc(1);
+  other.shape = PatternShape{};
+  EXPECT_NEAR(extent_radius(other), 0.113 + 0.012, 1e-12);
+  other.shape = TagShape{3, 0.2};
+  EXPECT_NEAR(extent_radius(other), 0.1 * std::sqrt(2.0), 1e-12);
+}
+
+TEST(Observation, OfTheInnerRingAloneShowsTheWholePatternsExtent) {
+  Landmark landmark = disc(1);
+  landmark.shape = PatternShape{};
+  PointsObservation seen;
+  constexpr double kPxPerM = 1000.0;
+  for (const PatternDot& dot : pattern_dots({}))
+    if (dot.label > kDotsPerRing)
+      seen.points.push_back({dot.label, Eigen::Vector2d(300.0, 200.0) + kPxPerM * dot.centre_l,
+                             Eigen::Matrix2d::Identity()});
+  const ImageExtent extent = image_extent(seen, &landmark);
+  EXPECT_NEAR((extent.centre - Eigen::Vector2d(300.0, 200.0)).norm(), 0.0, 1e-9);
+  EXPECT_NEAR(extent.radius_px, kPxPerM * extent_radius(landmark), 1e-9);
+}
+
 TEST(Observation, GivesItsSensorSnapshot) {
   EllipseObservation seen;
   seen.sensor.look = 7;

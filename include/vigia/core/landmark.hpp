@@ -42,6 +42,10 @@ Eigen::Isometry3d wall_mount(const Eigen::Vector3d& centre_w, double normal_yaw)
 /// The radius of a disc landmark, or nothing for another shape.
 std::optional<double> disc_radius(const Landmark& landmark);
 
+/// Radius of the circle round the landmark's centre that holds all of its features, m: the disc's
+/// edge, the outer ring's dots, the tag's corners.
+double extent_radius(const Landmark& landmark);
+
 /// The landmarks that the robot knows, with unique ids, in ascending order of id.
 class LandmarkMap {
  public:

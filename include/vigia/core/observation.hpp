@@ -70,6 +70,16 @@ struct PointsObservation {
 /// What tracking hands to localization: closed by the geometry of the feature.
 using Observation = std::variant<EllipseObservation, PointsObservation>;
 
+/// Where a landmark lies in the image and how wide it is.
+struct ImageExtent {
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  double radius_px = 0.0;  ///< of extent_radius(): the longer semi-axis of a slanted landmark
+};
+
+/// The extent that an observation shows. A pattern of which one ring alone is seen is scaled up to
+/// the whole by @p landmark, where it is known.
+ImageExtent image_extent(const Observation& observation, const Landmark* landmark = nullptr);
+
 /// The snapshot that came with an observation.
 const SensorSnapshot& sensor_of(const Observation& observation);
 

@@ -49,7 +49,7 @@ struct Tick {
   /// Status of the tracker, when it was asked.
   std::optional<tracking::FeatureStatus> feature;
   /// The observation handed to the localizers; before it is associated.
-  const EllipseObservation* observation = nullptr;
+  const Observation* observation = nullptr;
   /// Distance of the feature from the principal point, px, when one was found while tracking.
   std::optional<double> centring_px;
   double tracked_s = 0.0;  ///< since the present target was acquired

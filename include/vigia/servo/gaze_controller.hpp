@@ -35,7 +35,7 @@ enum class TrackRequest { none, acquire, track };
 /// The tracker's answer to the last request, in pixels.
 struct GazeSighting {
   Eigen::Vector2d uv;
-  double radius_px = 0.0;
+  double radius_px = 0.0;  ///< of the whole landmark, as far as it is extent_radius() wide
 };
 
 struct GazeInput {
