@@ -134,8 +134,10 @@ void Pilot::Impl::look(const PilotInput& input) {
   for (std::size_t i = 0; i < scan.readings.size(); ++i) {
     const RangeReading& reading = scan.readings[i];
     if (!reading.echo || reading.range_m > params.ring.horizon_m) continue;
+    const double sigma =
+        std::hypot(params.ring.sigma_m, params.ring.sigma_relative * reading.range_m);
     const bool known = explained(reading, *plan, input.belief.pose, doubt,
-                                 from_deg(params.ring.half_angle_deg), params.ring.range_sigma_m);
+                                 from_deg(params.ring.half_angle_deg), sigma);
     unexplained[i] = known ? 0 : 1;
     hazards.push_back(
         {reading.range_m * Vector2d(std::cos(reading.bearing), std::sin(reading.bearing)), known});

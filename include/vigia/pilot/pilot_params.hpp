@@ -7,7 +7,8 @@ namespace vigia::pilot {
 /// How the ring of range sensors is read.
 struct RingParams {
   double half_angle_deg = 7.5;   ///< of a beam's cone
-  double range_sigma_m = 0.03;   ///< of a reading
+  double sigma_m = 0.02;         ///< constant part of a reading's σ
+  double sigma_relative = 0.01;  ///< part of σ that grows with the range
   double horizon_m = 2.5;        ///< echoes beyond this are nobody's business yet
   int confirmations = 3;         ///< scans that must show a thing before it counts
   double memory_s = 3.0;         ///< how long a thing counts that no beam has seen since
@@ -29,6 +30,7 @@ struct AvoidanceParams {
   double brake_m = 0.10;     ///< left before an unknown thing when the robot has stopped
   double brake_known_m = 0.03;  ///< left before anything at all
   double blocked_s = 8.0;       ///< without progress, after which the path counts as blocked
+  double give_up_s = 60.0;      ///< without progress, after which whoever plans gives up
   double rejoin_m = 0.08;       ///< from the path: the path is followed again
 };
 
