@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <set>
 #include <vector>
@@ -13,15 +12,14 @@
 
 namespace vigia::pilot {
 
-/// A round thing that the plan does not have; it may move.
+/// A round thing that the plan does not have. It moves at a constant velocity, but never nearer
+/// than gives_way_m to the robot's hull.
 struct Person {
-  std::function<Eigen::Vector2d(double seconds)> at;
+  Eigen::Vector2d position;
+  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();
   double radius_m = 0.25;
+  double gives_way_m = 0.4;
 };
-
-inline Person standing_at(const Eigen::Vector2d& p) {
-  return {[p](double) { return p; }};
-}
 
 /// The distance along a ray to a disc, or infinity.
 inline double ray_to_disc(const Eigen::Vector2d& origin, const Eigen::Vector2d& direction,
@@ -66,13 +64,12 @@ struct RingDrive {
     const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
     const auto wall = plan.cast(pose.position(), direction, 4.0);
     double range = wall ? wall->distance_m : 4.0;
-    for (const FloorPlan* more : {unknown_faces})
-      if (more != nullptr)
-        if (const auto hit = more->cast(pose.position(), direction, 4.0))
-          range = std::min(range, hit->distance_m);
+    if (unknown_faces != nullptr)
+      if (const auto hit = unknown_faces->cast(pose.position(), direction, 4.0))
+        range = std::min(range, hit->distance_m);
     for (const Person& person : people)
-      range = std::min(
-          range, ray_to_disc(pose.position(), direction, person.at(seconds), person.radius_m));
+      range = std::min(range,
+                       ray_to_disc(pose.position(), direction, person.position, person.radius_m));
     return range;
   }
 
@@ -87,12 +84,23 @@ struct RingDrive {
         least = std::min(least, (face.a + t * ab - pose.position()).norm());
       }
     for (const Person& person : people)
-      least = std::min(least, (person.at(seconds) - pose.position()).norm() - person.radius_m);
+      least = std::min(least, (person.position - pose.position()).norm() - person.radius_m);
     return least - kRadius;
+  }
+
+  void walk() {
+    for (Person& person : people) {
+      const Eigen::Vector2d next = person.position + kTick * person.velocity;
+      const double kept = kRadius + person.radius_m + person.gives_way_m;
+      const double there = (next - pose.position()).norm();
+      if (there > kept || there > (person.position - pose.position()).norm())
+        person.position = next;
+    }
   }
 
   void tick() {
     const Pose2 before = pose;
+    walk();
     double turned = 0.0;
     for (int i = 0; i < 8; ++i) {
       constexpr double kStep = kTick / 8;
