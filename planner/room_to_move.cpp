@@ -45,22 +45,33 @@ double segment_distance(const Vector2d& a0, const Vector2d& a1, const Vector2d& 
                    point_segment_distance(b0, a0, a1), point_segment_distance(b1, a0, a1)});
 }
 
+double RoomToMove::clearance(const Vector2d& p) const {
+  double nearest = plan_->clearance(p);
+  for (const RoundObstacle& other : others_)
+    nearest = std::min(nearest, (p - other.centre).norm() - other.radius_m);
+  return nearest;
+}
+
 bool RoomToMove::passes(const Vector2d& a, const Vector2d& b) const {
   const auto& faces = plan_->faces();
-  return std::all_of(faces.begin(), faces.end(), [&](const Wall& face) {
-    return boxes_apart(a, b, face.a, face.b, radius_m_) ||
-           segment_distance(a, b, face.a, face.b) >= radius_m_;
-  });
+  return std::all_of(faces.begin(), faces.end(),
+                     [&](const Wall& face) {
+                       return boxes_apart(a, b, face.a, face.b, radius_m_) ||
+                              segment_distance(a, b, face.a, face.b) >= radius_m_;
+                     }) &&
+         std::all_of(others_.begin(), others_.end(), [&](const RoundObstacle& other) {
+           return point_segment_distance(other.centre, a, b) >= radius_m_ + other.radius_m;
+         });
 }
 
 std::optional<Vector2d> RoomToMove::retreat(const Vector2d& p) const {
   constexpr double kRingSpacing = 0.05;
   constexpr int kRings = 20;
   constexpr int kDirections = 32;
-  const double here = plan_->clearance(p);
+  const double here = clearance(p);
   if (here >= radius_m_) return p;
   // Rounding must not let the place itself fail.
-  const RoomToMove smaller(*plan_, here - 1e-9);
+  const RoomToMove smaller(*plan_, here - 1e-9, others_);
   for (int ring = 1; ring <= kRings; ++ring) {
     for (int k = 0; k < kDirections; ++k) {
       const double angle = 2.0 * kPi * k / kDirections;

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
 #include "vigia/core/floor_plan.hpp"
+#include "vigia/core/round_obstacle.hpp"
 
 namespace vigia::planner {
 
@@ -12,15 +14,20 @@ namespace vigia::planner {
 double segment_distance(const Eigen::Vector2d& a0, const Eigen::Vector2d& a1,
                         const Eigen::Vector2d& b0, const Eigen::Vector2d& b1);
 
-/// Where a disc of a radius fits, exactly: no sampling along the way.
+/// Where a disc of a radius fits, exactly: no sampling along the way. The plan must outlive it.
 class RoomToMove {
  public:
-  RoomToMove(const FloorPlan& plan, double radius_m) : plan_(&plan), radius_m_(radius_m) {}
+  RoomToMove(const FloorPlan& plan, double radius_m, const std::vector<RoundObstacle>& others = {})
+      : plan_(&plan), others_(others), radius_m_(radius_m) {}
 
   double radius() const { return radius_m_; }
   const FloorPlan& plan() const { return *plan_; }
 
-  bool fits(const Eigen::Vector2d& p) const { return plan_->clearance(p) >= radius_m_; }
+  const std::vector<RoundObstacle>& others() const { return others_; }
+
+  /// Distance from @p p to the nearest face or obstacle, negative in a solid or outside the room.
+  double clearance(const Eigen::Vector2d& p) const;
+  bool fits(const Eigen::Vector2d& p) const { return clearance(p) >= radius_m_; }
 
   /// Whether the disc can go straight from @p a to @p b, both of which must lie on the free side of
   /// every face (fits() says so).
@@ -32,6 +39,7 @@ class RoomToMove {
 
  private:
   const FloorPlan* plan_;
+  std::vector<RoundObstacle> others_;
   double radius_m_;
 };
 

@@ -14,6 +14,8 @@ namespace {
 using Eigen::Vector2d;
 using Polyline = std::vector<Vector2d>;
 
+constexpr double kRounding = 1e-6;  // m
+
 /// The shortest polyline over vertices of @p points (in their order) that the disc can follow.
 Polyline shortcut(const RoomToMove& room, const Polyline& points) {
   const std::size_t n = points.size();
@@ -65,14 +67,27 @@ Polyline plan_leg(const RoomToMove& room, const Vector2d& start, const Vector2d&
 }
 
 /// Tries the whole clearance first, then less, down to none beyond the robot itself.
-Polyline plan_leg_with_fallback(const FloorPlan& plan, const Vector2d& start, const Vector2d& goal,
+Polyline plan_leg_with_fallback(const RoomToMove& body, const Vector2d& start, const Vector2d& goal,
                                 const RouteParams& params, std::uint64_t seed) {
   for (const double share : {1.0, 0.5, 0.0}) {
-    const RoomToMove room(plan, params.robot_radius_m + share * params.clearance_m);
+    const RoomToMove room(body.plan(), params.robot_radius_m + share * params.clearance_m,
+                          body.others());
     Polyline leg = plan_leg(room, start, goal, params.iterations, seed);
     if (!leg.empty()) return leg;
   }
   return {};
+}
+
+/// The obstacles, none of them nearer to @p start than the robot's radius.
+std::vector<RoundObstacle> leave_room(std::vector<RoundObstacle> others, const Vector2d& start,
+                                      double robot_radius_m) {
+  for (RoundObstacle& other : others)
+    other.radius_m =
+        std::min(other.radius_m, (other.centre - start).norm() - robot_radius_m - kRounding);
+  others.erase(std::remove_if(others.begin(), others.end(),
+                              [](const RoundObstacle& other) { return other.radius_m <= 0.0; }),
+               others.end());
+  return others;
 }
 
 Route failure(Route route, RouteStatus status, std::size_t leg) {
@@ -84,10 +99,12 @@ Route failure(Route route, RouteStatus status, std::size_t leg) {
 }  // namespace
 
 Route plan_route(const FloorPlan& plan, const std::vector<Vector2d>& waypoints,
-                 const RouteParams& params, std::uint64_t seed) {
+                 const RouteParams& params, std::uint64_t seed,
+                 const std::vector<RoundObstacle>& others) {
   Route route;
   route.waypoints = waypoints;
-  const RoomToMove body(plan, params.robot_radius_m);
+  const RoomToMove body(plan, params.robot_radius_m,
+                        leave_room(others, waypoints.front(), params.robot_radius_m));
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
     if (body.fits(waypoints[i])) continue;
     return i == 0 ? failure(route, RouteStatus::start_blocked, 0)
@@ -97,7 +114,7 @@ Route plan_route(const FloorPlan& plan, const std::vector<Vector2d>& waypoints,
   Polyline points;
   for (std::size_t i = 0; i + 1 < waypoints.size(); ++i) {
     const Polyline leg =
-        plan_leg_with_fallback(plan, waypoints[i], waypoints[i + 1], params, derive_seed(seed, i));
+        plan_leg_with_fallback(body, waypoints[i], waypoints[i + 1], params, derive_seed(seed, i));
     if (leg.empty()) return failure(route, RouteStatus::no_route, i);
     points.insert(points.end(), leg.begin(), leg.end());
   }

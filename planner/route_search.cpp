@@ -31,20 +31,25 @@ Vector2d point_of(const ob::State* state) {
   return {values[0], values[1]};
 }
 
-/// Places just free of the ends of the faces: a shortest route turns there, and passages lie
-/// between them.
-std::vector<Vector2d> places_round_corners(const RoomToMove& room) {
+/// Places on a ring round @p centre at which the disc fits.
+void append_ring(const RoomToMove& room, const Vector2d& centre, double radius_m,
+                 std::vector<Vector2d>& places) {
   constexpr int kDirections = 16;
-  std::vector<Vector2d> result;
-  for (const Wall& face : room.plan().faces()) {
-    for (const Vector2d& end : {face.a, face.b}) {
-      for (int k = 0; k < kDirections; ++k) {
-        const double angle = 2.0 * kPi * k / kDirections;
-        const Vector2d p = end + 1.02 * room.radius() * Vector2d(std::cos(angle), std::sin(angle));
-        if (room.fits(p)) result.push_back(p);
-      }
-    }
+  for (int k = 0; k < kDirections; ++k) {
+    const double angle = 2.0 * kPi * k / kDirections;
+    const Vector2d p = centre + 1.02 * radius_m * Vector2d(std::cos(angle), std::sin(angle));
+    if (room.fits(p)) places.push_back(p);
   }
+}
+
+/// Places just free of the ends of the faces and of the obstacles: a shortest route turns there,
+/// and passages lie between them.
+std::vector<Vector2d> places_round_corners(const RoomToMove& room) {
+  std::vector<Vector2d> result;
+  for (const Wall& face : room.plan().faces())
+    for (const Vector2d& end : {face.a, face.b}) append_ring(room, end, room.radius(), result);
+  for (const RoundObstacle& other : room.others())
+    append_ring(room, other.centre, room.radius() + other.radius_m, result);
   return result;
 }
 

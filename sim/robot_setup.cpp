@@ -120,6 +120,7 @@ RobotSetup read_robot_setup(MapReader& reader) {
   read_zoom(reader.map("zoom"), sensor, setup);
   read_odometry(reader.map("odometry"), setup.robot.odometry);
   read_sensor(reader.map("sensor"), setup.robot.sensor);
+  if (reader.has("range_ring")) setup.range_ring = read_range_ring(reader.map("range_ring"));
   return setup;
 }
 

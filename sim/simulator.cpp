@@ -12,6 +12,7 @@ Simulator::Simulator(const RobotSetup& setup, const WorldMap& world,
       robot_(setup.robot, start, setup.initial_zoom_mm, derive_seed(seed, "robot")),
       scene_(world, appearance, derive_seed(seed, "scene")) {
   robot_.set_zoom_range(setup_.zoom.min_zoom_mm(), setup_.zoom.max_zoom_mm());
+  if (setup_.range_ring) ring_.emplace(*setup_.range_ring, seed);
 }
 
 Intrinsics Simulator::true_intrinsics() const {
@@ -25,6 +26,12 @@ Intrinsics Simulator::true_intrinsics() const {
 std::unique_ptr<imaging::Frame> Simulator::expose() const {
   return scene_.expose(robot_.camera_pose(), true_intrinsics(), robot_.truth().stamp,
                        setup_.imaging);
+}
+
+RangeScan Simulator::scan() {
+  const RobotTruth& truth = robot_.truth();
+  if (!ring_) return {truth.stamp, 0.0, {}};
+  return ring_->scan(truth.stamp, truth.pose, plan_, {});
 }
 
 double Simulator::clearance() const {

@@ -46,7 +46,8 @@ Loop::Loop(const MissionSetup& setup, std::uint64_t seed, const std::vector<List
       watcher_(setup.tracker, setup.robot.robot.head, setup.ekf.sensor),
       gaze_(setup.robot.robot.head, setup.robot.robot.head_limits, setup.robot.zoom, setup.gaze),
       base_motion_({setup.robot.robot.base, setup.tick_s}),
-      pilot_(setup.path, setup.robot.robot.base, setup.pilot),
+      pilot_(setup.path, setup.world.plan, setup.robot.robot.radius_m, setup.robot.robot.base,
+             setup.pilot),
       look_around_(setup),
       waypoints_(setup.waypoints),
       dt_(Duration::from_seconds(setup.tick_s)) {
@@ -233,7 +234,7 @@ void Loop::steer() {
     simulator_.robot().command(command_, look_around_.step(head_));
     return;
   }
-  command_ = stopped_to_look_ ? BaseRates{} : pilot_.step(belief().pose);
+  command_ = drive();
   const BaseRates odometry{odometry_.trans / dt_.seconds(),
                            (odometry_.rot1 + odometry_.rot2) / dt_.seconds()};
   const BaseRates expected = base_motion_.expect(odometry, command_);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "blockages.hpp"
 #include "look_around.hpp"
 #include "look_scheduler.hpp"
 #include "timed_frame.hpp"
@@ -13,6 +14,7 @@
 #include "vigia/localization/disc_information.hpp"
 #include "vigia/localization/relocalizer.hpp"
 #include "vigia/mission/mission.hpp"
+#include "vigia/pilot/pilot.hpp"
 #include "vigia/servo/base_motion.hpp"
 
 namespace vigia::mission {
@@ -36,7 +38,11 @@ class Loop {
   void recover(const imaging::Frame& frame);
   void begin_recovery();
   void relocalize();
-  void replan(const Pose2& from);
+  BaseRates drive();
+  void tell_pilot(const pilot::PilotOutput& output);
+  void go_round(const pilot::PilotOutput& output);
+  bool replan(const Pose2& from, const std::string& reason,
+              const std::vector<RoundObstacle>& others = {});
   void note_failure(LandmarkId landmark);
   void drop_look(const std::string& reason);
   void tell_gaze(servo::GazeEvent event, LandmarkId landmark);
@@ -60,7 +66,10 @@ class Loop {
   Watcher watcher_;
   servo::GazeController gaze_;
   servo::BaseMotion base_motion_;
-  pilot::PathFollower pilot_;
+  pilot::Pilot pilot_;
+  pilot::PilotStatus pilot_status_ = pilot::PilotStatus::driving;
+  bool evading_ = false;
+  Blockages blockages_;
   LookAround look_around_;
   std::vector<Eigen::Vector2d> waypoints_;  ///< of the path that the pilot follows
 

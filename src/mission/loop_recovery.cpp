@@ -48,7 +48,10 @@ void Loop::relocalize() {
                        {"y_m", best.pose.y},
                        {"theta_rad", best.pose.theta},
                        {"sigma_m", belief().position_sigma()}});
-    replan(best.pose);
+    if (!replan(best.pose, "recovered")) {
+      tell("stuck", {}, {{"reason", "no route from where the robot found itself"}});
+      gave_up_ = Outcome::stuck;
+    }
     return;
   }
   if (look_around_.sweeps() >= setup_.recovery.sweeps) {
@@ -58,28 +61,6 @@ void Loop::relocalize() {
   look_ = scheduler_.next_look();
   simulator_.robot().begin_look();
   look_around_.begin(head_);
-}
-
-void Loop::replan(const Pose2& from) {
-  std::vector<Eigen::Vector2d> waypoints{from.position()};
-  // The waypoints that still lie ahead on the path that was being followed.
-  const Path& path = pilot_.path();
-  double station = 0.0;
-  for (std::size_t i = 1; i < waypoints_.size(); ++i) {
-    station = path.project(waypoints_[i], station, path.length());
-    if (station > pilot_.station() || i + 1 == waypoints_.size())
-      waypoints.push_back(waypoints_[i]);
-  }
-  const planner::Route route =
-      planner::plan_route(setup_.world.plan, waypoints, setup_.route, setup_.route_seed);
-  if (route.status != planner::RouteStatus::found) {
-    tell("stuck", {}, {{"reason", "no route from where the robot found itself"}});
-    gave_up_ = Outcome::stuck;
-    return;
-  }
-  waypoints_ = waypoints;
-  pilot_ = pilot::PathFollower(route.path, setup_.robot.robot.base, setup_.pilot);
-  tell("replan", {{"length_m", route.path.length()}});
 }
 
 }  // namespace vigia::mission

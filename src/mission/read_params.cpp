@@ -4,6 +4,43 @@
 
 namespace vigia::mission {
 
+namespace {
+
+/// Matched to the robot's ring unless the mission says otherwise.
+void read_pilot_ring(MapReader reader, const sim::RangeRingParams& ring,
+                     pilot::RingParams& params) {
+  params.half_angle_deg = 0.5 * to_deg(ring.cone);
+  params.sigma_m = reader.number("sigma_m", {0.0, 1.0}, ring.sigma_m);
+  params.sigma_relative = reader.number("sigma_relative", {0.0, 1.0}, ring.sigma_relative);
+  params.horizon_m = reader.number("horizon_m", {0.1, 100.0}, params.horizon_m);
+  params.confirmations =
+      static_cast<int>(reader.integer("confirmations", {1, 100}, params.confirmations));
+  params.memory_s = reader.number("memory_s", {0.0, 60.0}, params.memory_s);
+  params.thing_radius_m = reader.number("thing_radius_m", {0.0, 2.0}, params.thing_radius_m);
+  reader.finish();
+}
+
+void read_avoidance(MapReader reader, pilot::AvoidanceParams& params) {
+  params.near_m = reader.number("near_m", {0.0, 10.0}, params.near_m);
+  params.notice_m = reader.number("notice_m", {params.near_m + 0.1, 20.0}, params.notice_m);
+  params.corridor_m = reader.number("corridor_m", {0.0, 2.0}, params.corridor_m);
+  params.beside_m = reader.number("beside_m", {0.0, 2.0}, params.beside_m);
+  params.wall_m = reader.number("wall_m", {0.0, 2.0}, params.wall_m);
+  params.lane_m = reader.number("lane_m", {0.05, 1.0}, params.lane_m);
+  params.widest_m = reader.number("widest_m", {params.lane_m, 5.0}, params.widest_m);
+  params.horizon_m = reader.number("horizon_m", {0.5, 10.0}, params.horizon_m);
+  params.speed = reader.number("speed_mps", {0.01, 5.0}, params.speed);
+  params.patience_s = reader.number("patience_s", {0.1, 60.0}, params.patience_s);
+  params.brake_m = reader.number("brake_m", {0.0, 2.0}, params.brake_m);
+  params.brake_known_m = reader.number("brake_known_m", {0.0, 2.0}, params.brake_known_m);
+  params.rejoin_m = reader.number("rejoin_m", {0.01, 1.0}, params.rejoin_m);
+  params.blocked_s = reader.number("blocked_s", {0.5, 600.0}, params.blocked_s);
+  params.give_up_s = reader.number("give_up_s", {params.blocked_s, 1e5}, params.give_up_s);
+  reader.finish();
+}
+
+}  // namespace
+
 void read_ekf(MapReader reader, const sim::RobotParams& robot, localization::EkfParams& params) {
   // Matched to the robot unless the mission says otherwise.
   params.odometry = robot.odometry;
@@ -102,13 +139,16 @@ void read_gaze(MapReader reader, servo::GazeParams& params) {
   reader.finish();
 }
 
-void read_pilot(MapReader reader, pilot::PathFollowerParams& params) {
-  params.lookahead_m = reader.number("lookahead_m", {0.02, 5.0}, params.lookahead_m);
-  params.turn_in_place_deg =
-      reader.number("turn_in_place_deg", {1.0, 180.0}, params.turn_in_place_deg);
-  params.goal_tolerance_m =
-      reader.number("goal_tolerance_m", {0.005, 5.0}, params.goal_tolerance_m);
-  params.slow_down_m = reader.number("slow_down_m", {0.0, 10.0}, params.slow_down_m);
+void read_pilot(MapReader reader, const sim::RobotSetup& robot, pilot::PilotParams& params) {
+  pilot::PathFollowerParams& follower = params.follower;
+  follower.lookahead_m = reader.number("lookahead_m", {0.02, 5.0}, follower.lookahead_m);
+  follower.turn_in_place_deg =
+      reader.number("turn_in_place_deg", {1.0, 180.0}, follower.turn_in_place_deg);
+  follower.goal_tolerance_m =
+      reader.number("goal_tolerance_m", {0.005, 5.0}, follower.goal_tolerance_m);
+  follower.slow_down_m = reader.number("slow_down_m", {0.0, 10.0}, follower.slow_down_m);
+  if (robot.range_ring) read_pilot_ring(reader.map("ring"), *robot.range_ring, params.ring);
+  read_avoidance(reader.map("avoidance"), params.avoidance);
   reader.finish();
 }
 

@@ -10,7 +10,7 @@ namespace vigia::mission {
 void read_ekf(MapReader reader, const sim::RobotParams& robot, localization::EkfParams& params);
 void read_look(MapReader& reader, LookParams& params);
 void read_gaze(MapReader reader, servo::GazeParams& params);
-void read_pilot(MapReader reader, pilot::PathFollowerParams& params);
+void read_pilot(MapReader reader, const sim::RobotSetup& robot, pilot::PilotParams& params);
 void read_recovery(MapReader reader, RecoveryParams& params);
 
 }  // namespace vigia::mission

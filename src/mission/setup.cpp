@@ -124,7 +124,7 @@ MissionSetup load_mission(const std::filesystem::path& file,
   read_look(look, setup.look);
   check_fixed_landmark(look, setup);
   read_gaze(mission.map("gaze"), setup.gaze);
-  read_pilot(mission.map("pilot"), setup.pilot);
+  read_pilot(mission.map("pilot"), setup.robot, setup.pilot);
   read_recovery(mission.map("recovery"), setup.recovery);
   read_route(mission.map("route"), setup);
   mission.finish();

@@ -7,11 +7,8 @@
 namespace vigia::pilot {
 namespace {
 
-constexpr double kWindow = 0.5;           // m that the station may advance in one step
-constexpr double kCornerReached = 0.02;   // m before a corner at which the turn begins
-constexpr double kAligned = from_deg(4);  // heading error at which a turn on the spot ends
-constexpr double kTurnGain = 3.0;         // 1/s, of the turn's final approach
-constexpr double kShare = 0.7;            // of the acceleration that braking counts on
+constexpr double kWindow = 0.5;          // m that the station may advance in one step
+constexpr double kCornerReached = 0.02;  // m before a corner at which the turn begins
 
 std::vector<double> stops_of(const Path& path, double corner) {
   std::vector<double> stops;
@@ -26,18 +23,19 @@ std::vector<double> stops_of(const Path& path, double corner) {
   return stops;
 }
 
-/// The largest rate from which an axis stops within @p distance.
-double braking_rate(double acceleration, double distance) {
-  return std::sqrt(2.0 * kShare * acceleration * std::max(distance, 0.0));
-}
-
 }  // namespace
 
 PathFollower::PathFollower(Path path, BaseLimits limits, PathFollowerParams params)
     : path_(std::move(path)),
       limits_(limits),
       params_(params),
-      stops_(stops_of(path_, from_deg(params.corner_deg))) {}
+      stops_(stops_of(path_, from_deg(params.corner_deg))),
+      pursuit_(limits, from_deg(params.turn_in_place_deg)) {}
+
+void PathFollower::skip_to(double station) {
+  station_ = std::clamp(station, station_, path_.length());
+  while (stretch_ + 1 < stops_.size() && stops_[stretch_] <= station_) ++stretch_;
+}
 
 void PathFollower::advance(const Pose2& estimate) {
   const Eigen::Vector2d p = estimate.position();
@@ -46,7 +44,7 @@ void PathFollower::advance(const Pose2& estimate) {
   if (!last && stops_[stretch_] - station_ <= kCornerReached) {
     station_ = stops_[stretch_];
     ++stretch_;
-    turning_ = true;
+    pursuit_.begin_turn();
   }
   if (last && (path_.points().back() - p).norm() <= params_.goal_tolerance_m) {
     station_ = path_.length();
@@ -71,12 +69,6 @@ Eigen::Vector2d PathFollower::pursued(const Pose2& estimate) const {
   return {c * d.x() + s * d.y(), -s * d.x() + c * d.y()};
 }
 
-BaseRates PathFollower::turn(double error) const {
-  const double rate = std::min({limits_.turn_rate, kTurnGain * std::abs(error),
-                                braking_rate(limits_.turn_acceleration, std::abs(error))});
-  return {0.0, std::copysign(rate, error)};
-}
-
 double PathFollower::speed_limit() const {
   const double left = stops_[stretch_] - station_;
   if (stretch_ + 1 < stops_.size())
@@ -90,17 +82,7 @@ BaseRates PathFollower::step(const Pose2& estimate) {
   if (!arrived_) advance(estimate);
   if (arrived_) return {};
 
-  const Eigen::Vector2d target = pursued(estimate);
-  const double error = std::atan2(target.y(), target.x());
-  if (std::abs(error) > from_deg(params_.turn_in_place_deg)) turning_ = true;
-  if (std::abs(error) < kAligned) turning_ = false;
-  if (turning_) return turn(error);
-
-  // Pure pursuit: the arc through the target has the curvature 2y/L².
-  const double curvature = 2.0 * target.y() / std::max(target.squaredNorm(), 1e-4);
-  double v = speed_limit();
-  if (std::abs(curvature) * v > limits_.turn_rate) v = limits_.turn_rate / std::abs(curvature);
-  return {v, v * curvature};
+  return pursuit_.step(pursued(estimate), speed_limit());
 }
 
 }  // namespace vigia::pilot

@@ -135,6 +135,63 @@ TEST(Route, ADoorNarrowerThanTheRobotIsNoRoute) {
   EXPECT_EQ(route_in(plan, {{1.0, 1.0}, {11.0, 1.0}}).status, RouteStatus::no_route);
 }
 
+/// Least distance of the path from an obstacle's surface.
+double distance_to(const RoundObstacle& obstacle, const Path& path) {
+  double least = 1e9;
+  for (std::size_t i = 1; i < path.points().size(); ++i)
+    least = std::min(least, segment_distance(path.points()[i - 1], path.points()[i],
+                                             obstacle.centre, obstacle.centre) -
+                                obstacle.radius_m);
+  return least;
+}
+
+TEST(Route, GoesRoundWhatStandsInItsWay) {
+  const FloorPlan plan = furnished_room();
+  const std::vector<RoundObstacle> others{{{2.0, 4.8}, 0.3}, {{3.1, 3.0}, 0.2}, {{6.0, 5.8}, 0.25}};
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    const Route route =
+        plan_route(plan, {{1.0, 1.0}, {6.0, 6.6}, {11.0, 6.0}}, RouteParams{}, seed, others);
+    ASSERT_EQ(route.status, RouteStatus::found) << "seed " << seed;
+    for (const RoundObstacle& other : others)
+      EXPECT_GE(distance_to(other, route.path), 0.3 - 1e-9) << "seed " << seed;
+    EXPECT_GE(path_clearance(plan, route.path), 0.3 - 1e-9) << "seed " << seed;
+  }
+}
+
+TEST(Route, KeepsTheWholeClearanceFromAnObstacleInTheOpen) {
+  const FloorPlan plan(kOutline, 2.8, {}, {});
+  const RoundObstacle other{{5.0, 3.5}, 0.4};
+  const Route route = plan_route(plan, {{1.0, 3.5}, {10.0, 3.5}}, RouteParams{}, 1, {other});
+  ASSERT_EQ(route.status, RouteStatus::found);
+  EXPECT_GE(distance_to(other, route.path), 0.45 - 1e-9);
+  // Not much longer than the straight line: round a circle of 0.85 m.
+  EXPECT_LE(route.path.length(), 9.3);
+}
+
+TEST(Route, AnObstacleInTheOnlyDoorIsNoRoute) {
+  const FloorPlan plan(kOutline, 2.8,
+                       {{{6.0, 0.0}, {6.0, 3.0}, 2.8}, {{6.0, 4.2}, {6.0, 7.0}, 2.8}}, {});
+  const Points waypoints{{1.0, 1.0}, {11.0, 6.0}};
+  EXPECT_EQ(plan_route(plan, waypoints, RouteParams{}, 1).status, RouteStatus::found);
+  EXPECT_EQ(plan_route(plan, waypoints, RouteParams{}, 1, {{{6.0, 3.6}, 0.3}}).status,
+            RouteStatus::no_route);
+}
+
+TEST(Route, AnObstacleOnTheGoalIsNamed) {
+  const Route route = plan_route(FloorPlan(kOutline, 2.8, {}, {}), {{1.0, 1.0}, {9.0, 5.0}},
+                                 RouteParams{}, 1, {{{9.2, 5.0}, 0.3}});
+  EXPECT_EQ(route.status, RouteStatus::goal_blocked);
+  EXPECT_EQ(route.leg, 0U);
+}
+
+TEST(Route, AnObstacleThatReachesIntoTheRobotAtItsStartLeavesItRoomThere) {
+  const RoundObstacle other{{1.5, 1.0}, 0.4};
+  const Route route = plan_route(FloorPlan(kOutline, 2.8, {}, {}), {{1.0, 1.0}, {9.0, 1.0}},
+                                 RouteParams{}, 1, {other});
+  ASSERT_EQ(route.status, RouteStatus::found);
+  EXPECT_GE(distance_to({other.centre, 0.2}, route.path), 0.3 - 1e-5);
+}
+
 TEST(Route, TheSameSeedGivesTheSameBytesWhateverElseUsesOmpl) {
   const FloorPlan plan = furnished_room();
   const Points waypoints{{1.0, 1.0}, {11.0, 6.0}, {1.0, 6.0}};

@@ -10,7 +10,7 @@
 #include "vigia/core/belief.hpp"
 #include "vigia/core/world_map.hpp"
 #include "vigia/localization/ekf.hpp"
-#include "vigia/pilot/path_follower.hpp"
+#include "vigia/pilot/pilot_params.hpp"
 #include "vigia/planner/look_trigger.hpp"
 #include "vigia/planner/route.hpp"
 #include "vigia/planner/visibility.hpp"
@@ -69,7 +69,7 @@ struct MissionSetup {
   localization::EkfParams ekf;
   LookParams look;
   servo::GazeParams gaze;
-  pilot::PathFollowerParams pilot;
+  pilot::PilotParams pilot;
   RecoveryParams recovery;
   bool full_frames = false;  ///< compute every pixel of every frame, for comparison
   int recorded_frames = 8;   ///< camera pictures kept in the run folder

@@ -5,6 +5,7 @@
 #include "vigia/core/actuation.hpp"
 #include "vigia/core/path.hpp"
 #include "vigia/core/pose.hpp"
+#include "vigia/pilot/pursuit.hpp"
 
 namespace vigia::pilot {
 
@@ -30,13 +31,14 @@ class PathFollower {
   bool arrived() const { return arrived_; }
   /// Arc length reached.
   double station() const { return station_; }
+  /// Goes on from @p station, further along the path: somebody else drove the robot there.
+  void skip_to(double station);
   const Path& path() const { return path_; }
 
  private:
   /// The point to drive towards, in the base frame.
   Eigen::Vector2d pursued(const Pose2& estimate) const;
   void advance(const Pose2& estimate);
-  BaseRates turn(double error) const;
   double speed_limit() const;
 
   Path path_;
@@ -45,7 +47,7 @@ class PathFollower {
   std::vector<double> stops_;  ///< stations at which the stretches end, the path's end last
   std::size_t stretch_ = 0;
   double station_ = 0.0;
-  bool turning_ = false;
+  Pursuit pursuit_;
   bool arrived_ = false;
 };
 

@@ -8,6 +8,7 @@
 
 #include "vigia/core/floor_plan.hpp"
 #include "vigia/core/path.hpp"
+#include "vigia/core/round_obstacle.hpp"
 
 namespace vigia::planner {
 
@@ -28,8 +29,11 @@ struct Route {
 };
 
 /// A route through @p waypoints (start, vias, goal) that keeps robot_radius_m + clearance_m from
-/// every face, planned leg by leg with OMPL; the same seed gives the same route.
+/// every face and every one of @p others (what stands in the building's way beyond its plan),
+/// planned leg by leg with OMPL; the same seed gives the same route. Others that reach into the
+/// robot at its start count as far as they leave it room: where the robot stands, nothing else is.
 Route plan_route(const FloorPlan& plan, const std::vector<Eigen::Vector2d>& waypoints,
-                 const RouteParams& params, std::uint64_t seed);
+                 const RouteParams& params, std::uint64_t seed,
+                 const std::vector<RoundObstacle>& others = {});
 
 }  // namespace vigia::planner

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <optional>
+#include <string>
+
+#include "vigia/sim/range_ring.hpp"
 #include "vigia/sim/robot.hpp"
 #include "vigia/sim/scene.hpp"
 
@@ -12,10 +16,11 @@ struct RobotSetup {
   ZoomCalibration zoom;  ///< what the robot believes; per-look focal error on top is the truth
   ImagingParams imaging;
   double initial_zoom_mm = 8.0;
+  std::optional<RangeRingParams> range_ring;
 };
 
-/// Reads a robot file: keys `name`, `base`, `head`, `zoom`, `camera`, `odometry`, `sensor`. Throws
-/// InputError with the place of what is wrong.
+/// Reads a robot file: keys `name`, `base`, `head`, `zoom`, `camera`, `odometry`, `sensor`,
+/// `range_ring`. Throws InputError with the place of what is wrong.
 RobotSetup read_robot_setup(MapReader& reader);
 
 /// The simulated world with the robot in it.
@@ -36,12 +41,15 @@ class Simulator {
   Intrinsics true_intrinsics() const;
   /// Distance from the robot's hull to the nearest true face, m; negative: collided.
   double clearance() const;
+  /// What the ring of range sensors says now; without a ring, no readings.
+  RangeScan scan();
 
  private:
   RobotSetup setup_;
   FloorPlan plan_;
   Robot robot_;
   Scene scene_;
+  std::optional<RangeRing> ring_;
 };
 
 }  // namespace vigia::sim

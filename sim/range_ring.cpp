@@ -1,0 +1,126 @@
+#include "vigia/sim/range_ring.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vigia::sim {
+namespace {
+
+using Eigen::Vector2d;
+
+double cross(const Vector2d& a, const Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+Vector2d unit(double angle) {
+  return {std::cos(angle), std::sin(angle)};
+}
+
+/// A sector of the plane with its tip in the origin, narrower than a half-plane.
+struct Sector {
+  Vector2d right;  ///< unit vectors along the edges
+  Vector2d left;
+
+  bool holds(const Vector2d& p) const { return cross(right, p) >= 0.0 && cross(left, p) <= 0.0; }
+};
+
+/// Cuts [low, high], fractions of the way from a to b, down to where side(p) ≥ 0. False: nothing
+/// is left.
+bool cut(double side_a, double side_b, double& low, double& high) {
+  if (side_a < 0.0 && side_b < 0.0) return false;
+  if (side_a >= 0.0 && side_b >= 0.0) return true;
+  const double at = side_a / (side_a - side_b);
+  if (side_a < 0.0)
+    low = std::max(low, at);
+  else
+    high = std::min(high, at);
+  return low <= high;
+}
+
+/// Distance from the sector's tip to the part of the segment ab inside it.
+std::optional<double> segment_in_sector(const Sector& sector, const Vector2d& a,
+                                        const Vector2d& b) {
+  double low = 0.0;
+  double high = 1.0;
+  if (!cut(cross(sector.right, a), cross(sector.right, b), low, high)) return std::nullopt;
+  if (!cut(-cross(sector.left, a), -cross(sector.left, b), low, high)) return std::nullopt;
+  const Vector2d ab = b - a;
+  const double nearest = std::clamp(-a.dot(ab) / ab.squaredNorm(), low, high);
+  return (a + nearest * ab).norm();
+}
+
+/// Distance from the sector's tip to the part of a circle inside it.
+std::optional<double> circle_in_sector(const Sector& sector, const Vector2d& centre,
+                                       double radius) {
+  if (sector.holds(centre)) return std::max(0.0, centre.norm() - radius);
+  std::optional<double> nearest;
+  for (const Vector2d& edge : {sector.right, sector.left}) {
+    const double along = edge.dot(centre);
+    const double off = cross(edge, centre);
+    const double half_chord2 = radius * radius - off * off;
+    if (half_chord2 < 0.0 || along + std::sqrt(half_chord2) < 0.0) continue;
+    const double hit = std::max(0.0, along - std::sqrt(half_chord2));
+    nearest = std::min(hit, nearest.value_or(hit));
+  }
+  return nearest;
+}
+
+}  // namespace
+
+std::optional<double> nearest_in_cone(const FloorPlan& plan, const std::vector<Pillar>& pillars,
+                                      const Eigen::Vector2d& p, double direction, double cone,
+                                      double reach_m, double above_m) {
+  const Sector sector{unit(direction - 0.5 * cone), unit(direction + 0.5 * cone)};
+  double nearest = reach_m;
+  bool echo = false;
+  const auto take = [&](const std::optional<double>& distance) {
+    if (!distance || *distance > nearest) return;
+    nearest = *distance;
+    echo = true;
+  };
+  for (const Wall& face : plan.faces())
+    if (face.height_m > above_m) take(segment_in_sector(sector, face.a - p, face.b - p));
+  for (const Pillar& pillar : pillars)
+    if (pillar.height_m > above_m)
+      take(circle_in_sector(sector, pillar.centre - p, pillar.radius_m));
+  return echo ? std::optional(nearest) : std::nullopt;
+}
+
+RangeRing::RangeRing(const RangeRingParams& params, std::uint64_t seed)
+    : params_(params), random_(seed, "range ring") {}
+
+RangeScan RangeRing::scan(Stamp stamp, const Pose2& pose, const FloorPlan& plan,
+                          const std::vector<Pillar>& pillars) {
+  RangeScan scan{stamp, params_.reach_m, {}};
+  scan.readings.reserve(static_cast<std::size_t>(params_.beams));
+  for (int i = 0; i < params_.beams; ++i) {
+    RangeReading reading{wrap_angle(2.0 * kPi * i / params_.beams), params_.reach_m, false};
+    const auto nearest =
+        nearest_in_cone(plan, pillars, pose.position(), pose.theta + reading.bearing, params_.cone,
+                        params_.reach_m, params_.height_m);
+    const bool dropped = random_.uniform(0.0, 1.0) < params_.dropout;
+    const double error = random_.normal();
+    if (nearest && !dropped) {
+      const double sigma = std::hypot(params_.sigma_m, params_.sigma_relative * *nearest);
+      reading.range_m = std::clamp(*nearest + sigma * error, 0.0, params_.reach_m);
+      reading.echo = true;
+    }
+    scan.readings.push_back(reading);
+  }
+  return scan;
+}
+
+RangeRingParams read_range_ring(MapReader reader) {
+  RangeRingParams params;
+  params.beams = static_cast<int>(reader.integer("beams", {1, 720}, params.beams));
+  params.reach_m = reader.number("reach_m", {0.1, 100.0}, params.reach_m);
+  params.sigma_m = reader.number("sigma_m", {0.0, 1.0}, params.sigma_m);
+  params.sigma_relative = reader.number("sigma_relative", {0.0, 1.0}, params.sigma_relative);
+  params.cone = from_deg(reader.number("cone_deg", {0.1, 170.0}, to_deg(params.cone)));
+  params.height_m = reader.number("height_m", {0.0, 3.0}, params.height_m);
+  params.dropout = reader.number("dropout", {0.0, 1.0}, params.dropout);
+  reader.finish();
+  return params;
+}
+
+}  // namespace vigia::sim
