@@ -79,6 +79,7 @@ void Loop::replan(const Pose2& from) {
   }
   waypoints_ = waypoints;
   pilot_ = pilot::PathFollower(route.path, setup_.robot.robot.base, setup_.pilot);
+  scheduler_.follow(pilot_.path());
   tell("replan", {{"length_m", route.path.length()}});
 }
 
