@@ -52,6 +52,18 @@ if(NOT TARGET vigia::ompl)
   target_link_libraries(vigia::ompl INTERFACE ${OMPL_LIBRARIES})
 endif()
 
+# fuzzylite brings no package of its own.
+find_path(FUZZYLITE_INCLUDE_DIR fl/Headers.h)
+find_library(FUZZYLITE_LIBRARY fuzzylite)
+if(NOT FUZZYLITE_INCLUDE_DIR OR NOT FUZZYLITE_LIBRARY)
+  message(FATAL_ERROR "vigia needs fuzzylite 6 (Debian: libfuzzylite-dev)")
+endif()
+if(NOT TARGET vigia::fuzzylite)
+  add_library(vigia::fuzzylite INTERFACE IMPORTED)
+  target_include_directories(vigia::fuzzylite SYSTEM INTERFACE ${FUZZYLITE_INCLUDE_DIR})
+  target_link_libraries(vigia::fuzzylite INTERFACE ${FUZZYLITE_LIBRARY})
+endif()
+
 vigia_find(PkgConfig)
 if(NOT TARGET PkgConfig::vigia_cairo)
   pkg_check_modules(vigia_cairo REQUIRED IMPORTED_TARGET GLOBAL cairo)

@@ -1,20 +1,17 @@
 #include "vigia/planner/look_policy.hpp"
 
+#include "fuzzy_policy.hpp"
+#include "greedy_policy.hpp"
+
 #include <algorithm>
 
 namespace vigia::planner {
 namespace {
 
-bool can_be_watched(const Landmark& landmark, const LookContext& context) {
-  const auto& excluded = context.excluded;
-  return std::find(excluded.begin(), excluded.end(), landmark.id) == excluded.end() &&
-         context.visibility.sight(landmark, context.belief.pose) == Sight::visible;
-}
-
 std::vector<const Landmark*> candidates(const LookContext& context) {
   std::vector<const Landmark*> result;
   for (const Landmark& landmark : context.landmarks.all()) {
-    if (can_be_watched(landmark, context)) result.push_back(&landmark);
+    if (can_be_watched(landmark, context, context.belief.pose)) result.push_back(&landmark);
   }
   return result;
 }
@@ -23,10 +20,11 @@ class FixedPolicy final : public LookPolicy {
  public:
   explicit FixedPolicy(std::optional<LandmarkId> fixed) : fixed_(fixed) {}
   std::string_view name() const override { return "fixed"; }
-  std::optional<LandmarkId> choose(const LookContext& context) override {
+  std::optional<LookChoice> choose(const LookContext& context) override {
     const Landmark* landmark = fixed_ ? context.landmarks.find(*fixed_) : nullptr;
-    if (landmark == nullptr || !can_be_watched(*landmark, context)) return std::nullopt;
-    return fixed_;
+    if (landmark == nullptr || !can_be_watched(*landmark, context, context.belief.pose))
+      return std::nullopt;
+    return LookChoice{*fixed_, {}, {}, "the fixed landmark"};
   }
 
  private:
@@ -37,10 +35,10 @@ class RandomPolicy final : public LookPolicy {
  public:
   explicit RandomPolicy(RandomStream stream) : stream_(stream) {}
   std::string_view name() const override { return "random"; }
-  std::optional<LandmarkId> choose(const LookContext& context) override {
+  std::optional<LookChoice> choose(const LookContext& context) override {
     const auto landmarks = candidates(context);
     if (landmarks.empty()) return std::nullopt;
-    return landmarks[stream_.index(landmarks.size())]->id;
+    return LookChoice{landmarks[stream_.index(landmarks.size())]->id, {}, {}, "drawn"};
   }
 
  private:
@@ -50,7 +48,7 @@ class RandomPolicy final : public LookPolicy {
 class NearestPolicy final : public LookPolicy {
  public:
   std::string_view name() const override { return "nearest"; }
-  std::optional<LandmarkId> choose(const LookContext& context) override {
+  std::optional<LookChoice> choose(const LookContext& context) override {
     const auto landmarks = candidates(context);
     if (landmarks.empty()) return std::nullopt;
     const Pose2& pose = context.belief.pose;
@@ -58,22 +56,30 @@ class NearestPolicy final : public LookPolicy {
         landmarks.begin(), landmarks.end(), [&](const Landmark* a, const Landmark* b) {
           return context.visibility.range(*a, pose) < context.visibility.range(*b, pose);
         });
-    return (*nearest)->id;
+    return LookChoice{(*nearest)->id, {}, {}, "the nearest"};
   }
 };
 
 }  // namespace
 
+bool can_be_watched(const Landmark& landmark, const LookContext& context, const Pose2& pose) {
+  const auto& excluded = context.excluded;
+  return std::find(excluded.begin(), excluded.end(), landmark.id) == excluded.end() &&
+         context.visibility.sight(landmark, pose) == Sight::visible;
+}
+
 std::unique_ptr<LookPolicy> make_look_policy(const std::string& name,
-                                             std::optional<LandmarkId> fixed, RandomStream stream) {
-  if (name == "fixed") return std::make_unique<FixedPolicy>(fixed);
-  if (name == "random") return std::make_unique<RandomPolicy>(stream);
+                                             const LookPolicyParts& parts) {
+  if (name == "fixed") return std::make_unique<FixedPolicy>(parts.fixed);
+  if (name == "random") return std::make_unique<RandomPolicy>(parts.stream);
   if (name == "nearest") return std::make_unique<NearestPolicy>();
+  if (name == "greedy") return make_greedy_policy();
+  if (name == "fuzzy") return make_fuzzy_policy(parts);
   return nullptr;
 }
 
 std::vector<std::string> look_policy_names() {
-  return {"fixed", "random", "nearest"};
+  return {"fixed", "random", "nearest", "greedy", "fuzzy"};
 }
 
 }  // namespace vigia::planner

@@ -79,7 +79,7 @@ void GazeController::enter(GazeState state, Stamp now) {
 
 GazeOutput GazeController::step(const GazeInput& input) {
   carry_target(input);
-  if (!order_) return {};
+  if (!order_) return rest(input);
   const Landmark* landmark = input.landmarks.find(order_->landmark);
   if (landmark == nullptr) return finish(GazeEvent::expired);
   if (!state_since_) state_since_ = input.now;
@@ -135,8 +135,25 @@ double GazeController::arrival_time(const GazeInput& input, const HeadAngles& ai
                    std::abs(zoom_error) / limits_.zoom_rate_mm_s});
 }
 
-/// The focal length at which the landmark has the ordered size, or the shorter one at which it
-/// stays inside the image though belief and head be 3σ off.
+double GazeController::held_radius(double radius_px, const Intrinsics& intrinsics) const {
+  if (!order_->zoom_mm) return order_->radius_px;
+  return std::clamp(radius_px, params_.planned_least_px,
+                    std::max(params_.planned_most * half_image(intrinsics),
+                             params_.planned_least_px));
+}
+
+GazeOutput GazeController::rest(const GazeInput& input) const {
+  GazeOutput output;
+  if (!rest_zoom_mm_) return output;
+  const double wanted = std::clamp(*rest_zoom_mm_, zoom_.min_zoom_mm(), zoom_.max_zoom_mm());
+  output.command.zoom_mm_s =
+      std::clamp((wanted - input.head.zoom_mm) / params_.servo.hold_s, -limits_.zoom_rate_mm_s,
+                 limits_.zoom_rate_mm_s);
+  return output;
+}
+
+/// The focal length that is planned or at which the landmark has the ordered size, or the shorter
+/// one at which it stays inside the image though belief and head be 3σ off.
 double GazeController::wanted_focal(const GazeInput& input, const Landmark& landmark,
                                     const Eigen::Vector3d& p_r) const {
   const Eigen::Vector3d p_h = p_r - geometry_.mount_r;
@@ -155,7 +172,9 @@ double GazeController::wanted_focal(const GazeInput& input, const Landmark& land
   const double sigma =
       std::hypot(std::sqrt(std::max(variance, 0.0)), from_deg(params_.look_angle_deg));
 
-  const double by_size = order_->radius_px * range / radius;
+  const double planned = order_->zoom_mm ? zoom_.at(*order_->zoom_mm).px : 0.0;
+  const double wanted_px = held_radius(planned * radius / range, input.intrinsics);
+  const double by_size = wanted_px * range / radius;
   const double spread = std::tan(std::min(3.0 * sigma, 0.4 * kPi)) + radius / range;
   const double by_field = 0.9 * half_image(input.intrinsics) / spread;
   return std::clamp(std::min(by_size, by_field), zoom_.samples().front().px,
@@ -281,7 +300,8 @@ GazeOutput GazeController::watch(const GazeInput& input, const Landmark& landmar
                               .value();
   output.command.zoom_mm_s =
       std::clamp(zoom_control_.rate(zoom_, input.head.zoom_mm, input.sighting->radius_px,
-                                    order_->radius_px, -approach / p_c.z()),
+                                    held_radius(input.sighting->radius_px, input.intrinsics),
+                                    -approach / p_c.z()),
                  -limits_.zoom_rate_mm_s, limits_.zoom_rate_mm_s);
   output.request = TrackRequest::track;
   return output;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <numeric>
 #include <system_error>
 
@@ -265,6 +267,25 @@ std::string MapReader::text(const std::string& key, const std::string& fallback)
   if (const ConfigNode* value = ask(key)) return read_text(*value, path(key));
   resolve(key, make_scalar(fallback, where(), !is_plain_text(fallback)));
   return fallback;
+}
+
+std::optional<MapReader::NamedText> MapReader::text_or_file(const std::string& key) {
+  const std::string value = text(key, "default");
+  if (value == "default") return std::nullopt;
+  ConfigNode& node = *node_->find(key);
+  if (value.find('\n') != std::string::npos)
+    return NamedText{value, to_string(node.where) + " (" + path(key) + ")"};
+  const std::filesystem::path file =
+      std::filesystem::path(node.where.file).parent_path() / value;
+  std::ifstream in(file, std::ios::binary);
+  std::string content{std::istreambuf_iterator<char>(in), {}};
+  if (!in || content.find('\n') == std::string::npos)
+    throw InputError(node.where, path(key) + ": found '" + value +
+                                     "', must be a file that can be read, or a text of several "
+                                     "lines");
+  node.scalar = content;
+  node.quoted = true;
+  return NamedText{content, file.string()};
 }
 
 std::size_t MapReader::choice(const std::string& key, const std::vector<std::string>& choices) {

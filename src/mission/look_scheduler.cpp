@@ -10,9 +10,20 @@ LookScheduler::LookScheduler(const MissionSetup& setup, const InformationModel& 
       information_(information),
       visibility_(setup.world.plan, setup.robot.robot.head, setup.robot.robot.head_limits,
                   setup.look.visibility),
-      policy_(planner::make_look_policy(setup.look.policy, setup.look.fixed_landmark,
-                                        RandomStream(seed, "look policy"))),
-      trigger_(setup.look.trigger) {}
+      head_model_{setup.robot.robot.head, setup.robot.robot.head_limits, setup.robot.zoom,
+                  setup.look.radius_px},
+      policy_(planner::make_look_policy(
+          setup.look.policy,
+          {setup.look.fixed_landmark, RandomStream(seed, "look policy"), setup.world.landmarks,
+           visibility_, head_model_, setup.look.rules, setup.look.perception})),
+      trigger_(setup.look.trigger) {
+  follow(setup.path);
+}
+
+void LookScheduler::follow(const Path& path) {
+  path_ = &path;
+  policy_->follow(path);
+}
 
 planner::LookDemand LookScheduler::demand(Stamp now, const Belief& belief, double travelled_m) {
   if (!asked_ || now - *asked_ >= Duration::from_seconds(setup_.look.period_s)) {
@@ -22,8 +33,9 @@ planner::LookDemand LookScheduler::demand(Stamp now, const Belief& belief, doubl
   return last_;
 }
 
-std::optional<GazeOrder> LookScheduler::choose(Stamp now, const Belief& belief,
-                                               const HeadReading& head, double station_m) {
+std::optional<LookScheduler::Decision> LookScheduler::choose(Stamp now, const Belief& belief,
+                                                             const HeadReading& head,
+                                                             const Going& going) {
   const Duration exclusion = Duration::from_seconds(setup_.look.exclude_s);
   failures_.erase(std::remove_if(failures_.begin(), failures_.end(),
                                  [&](const auto& f) { return now - f.second > exclusion; }),
@@ -31,18 +43,20 @@ std::optional<GazeOrder> LookScheduler::choose(Stamp now, const Belief& belief,
   std::vector<LandmarkId> excluded;
   for (const auto& failure : failures_) excluded.push_back(failure.first);
 
-  const auto landmark =
-      policy_->choose({now, belief, head, station_m, setup_.path, setup_.world.landmarks,
-                       visibility_, information_, excluded});
-  if (!landmark) return std::nullopt;
+  const auto choice = policy_->choose({now, belief, head, going.station_m, *path_,
+                                       setup_.world.landmarks, visibility_, information_, excluded,
+                                       head_model_, going.speed_mps, going.standing,
+                                       setup_.ekf.odometry});
+  if (!choice) return std::nullopt;
   GazeOrder order;
   order.look = next_look_++;
-  order.landmark = *landmark;
+  order.landmark = choice->landmark;
+  order.zoom_mm = choice->zoom_mm;
   order.issued = now;
   order.expires = now + Duration::from_seconds(setup_.look.timeout_s);
   order.dwell_s = setup_.look.dwell_s;
   order.radius_px = setup_.look.radius_px;
-  return order;
+  return Decision{order, choice->suitability, choice->reason};
 }
 
 void LookScheduler::failed(Stamp now, LandmarkId landmark) {

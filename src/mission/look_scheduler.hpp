@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "vigia/core/gaze.hpp"
@@ -18,9 +19,28 @@ class LookScheduler {
   /// What is demanded now; the planner's slow rate is kept inside.
   planner::LookDemand demand(Stamp now, const Belief& belief, double travelled_m);
 
+  /// The robot follows this path from now on. It must outlive the scheduler's use of it.
+  void follow(const Path& path);
+  /// The zoom to wait with between looks, when the policy plans one.
+  std::optional<double> resting_zoom(double station_m) const {
+    return policy_->resting_zoom(station_m);
+  }
+
+  /// The base as the next look finds it.
+  struct Going {
+    double station_m = 0.0;
+    double speed_mps = 0.0;
+    bool standing = false;  ///< stopped in order to look
+  };
+  /// A gaze order and why it was given.
+  struct Decision {
+    GazeOrder order;
+    std::optional<double> suitability;
+    std::string reason;
+  };
   /// The next gaze order, or nothing when no landmark will do.
-  std::optional<GazeOrder> choose(Stamp now, const Belief& belief, const HeadReading& head,
-                                  double station_m);
+  std::optional<Decision> choose(Stamp now, const Belief& belief, const HeadReading& head,
+                                 const Going& going);
 
   /// A number for an acquisition that no policy chose (a stop of the search).
   LookId next_look() { return next_look_++; }
@@ -34,6 +54,8 @@ class LookScheduler {
   const MissionSetup& setup_;
   const InformationModel& information_;
   planner::Visibility visibility_;
+  planner::HeadModel head_model_;
+  const Path* path_ = nullptr;
   std::unique_ptr<planner::LookPolicy> policy_;
   planner::LookTrigger trigger_;
   planner::LookDemand last_ = planner::LookDemand::none;

@@ -194,24 +194,41 @@ void Loop::plan() {
   const auto demand = scheduler_.demand(now_, belief(), travelled_m_);
   // A landmark that is not where the belief has it is reason enough to stand still.
   const bool stop = demand == planner::LookDemand::stopped || failed_in_a_row_ > 0;
-  if (stop != stopped_to_look_)
-    tell(stop ? "stop" : "restart", {{"sigma_m", belief().position_sigma()}});
+  tell_limits(demand, stop);
   stopped_to_look_ = stop;
   const bool wanted = stop || demand != planner::LookDemand::none;
   if (wanted && gaze_.state() == GazeState::idle) {
-    if (const auto order = scheduler_.choose(now_, belief(), head_, pilot_.station())) {
-      look_ = order->look;
+    const LookScheduler::Going going{pilot_.station(), odometry_.trans / dt_.seconds(), stop};
+    if (const auto decision = scheduler_.choose(now_, belief(), head_, going)) {
+      const GazeOrder& order = decision->order;
+      look_ = order.look;
       look_fused_ = false;
       rejected_in_a_row_ = 0;
       simulator_.robot().begin_look();
-      gaze_.order(*order);
-      tell("look", {{"look", static_cast<double>(look_)},
-                    {"landmark", static_cast<double>(order->landmark)},
-                    {"sigma_m", belief().position_sigma()},
-                    {"travelled_m", travelled_m_}});
+      gaze_.order(order);
+      Numbers numbers{{"look", static_cast<double>(look_)},
+                      {"landmark", static_cast<double>(order.landmark)},
+                      {"sigma_m", belief().position_sigma()},
+                      {"travelled_m", travelled_m_}};
+      if (decision->suitability) numbers.emplace_back("suitability", *decision->suitability);
+      if (order.zoom_mm) numbers.emplace_back("zoom_mm", *order.zoom_mm);
+      tell("look", numbers, {{"reason", decision->reason}});
     }
   }
   timing_.plan += watch.elapsed_ms();
+}
+
+void Loop::tell_limits(planner::LookDemand demand, bool stop) {
+  const bool over = setup_.look.trigger.kind == planner::LookTriggerParams::Kind::uncertainty &&
+                    demand != planner::LookDemand::none;
+  const double sigma = belief().position_sigma();
+  if (over && !over_limit_1_) tell("limit_1", {{"sigma_m", sigma}});
+  over_limit_1_ = over;
+  if (stop == stopped_to_look_) return;
+  const bool limit_2 = demand == planner::LookDemand::stopped;
+  const Texts why{{"reason", limit_2 ? "the uncertainty is above the second limit"
+                                     : "a landmark was not where it should be"}};
+  tell(stop ? "stop" : "restart", {{"sigma_m", sigma}}, stop ? why : Texts{});
 }
 
 void Loop::drop_look(const std::string& reason) {
@@ -243,6 +260,7 @@ void Loop::steer() {
   servo::GazeInput input{
       now_, head_, expected, belief(), setup_.world.landmarks, sensor_.intrinsics, std::nullopt};
   if (observation_ && order) input.sighting = gaze_sighting(*observation_, order->landmark);
+  gaze_.rest_at(scheduler_.resting_zoom(pilot_.station()));
   const servo::GazeOutput output = gaze_.step(input);
   timing_.servo += watch.elapsed_ms();
   if (order) {

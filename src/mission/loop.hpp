@@ -45,6 +45,8 @@ class Loop {
               const std::vector<RoundObstacle>& others = {});
   void note_failure(LandmarkId landmark);
   void drop_look(const std::string& reason);
+  /// The story of the two limits: limit_1, stop, restart.
+  void tell_limits(planner::LookDemand demand, bool stop);
   void tell_gaze(servo::GazeEvent event, LandmarkId landmark);
   std::optional<Outcome> outcome() const;
   servo::GazeSighting gaze_sighting(const Observation& observation, LandmarkId landmark) const;
@@ -81,6 +83,7 @@ class Loop {
   BaseRates command_;
   double travelled_m_ = 0.0;
   bool stopped_to_look_ = false;
+  bool over_limit_1_ = false;
   std::optional<Outcome> gave_up_;
 
   servo::TrackRequest request_ = servo::TrackRequest::none;

@@ -68,6 +68,7 @@ bool Loop::replan(const Pose2& from, const std::string& reason,
   if (route.status != planner::RouteStatus::found) return false;
   waypoints_ = waypoints;
   pilot_.follow(route.path);
+  scheduler_.follow(pilot_.path());
   tell("replan", {{"length_m", route.path.length()}}, {{"reason", reason}});
   return true;
 }

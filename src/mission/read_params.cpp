@@ -81,9 +81,9 @@ void read_ekf(MapReader reader, const sim::RobotParams& robot, localization::Ekf
 
 void read_look(MapReader& reader, LookParams& params) {
   const auto policies = planner::look_policy_names();
-  std::size_t nearest = 0;
-  while (nearest + 1 < policies.size() && policies[nearest] != params.policy) ++nearest;
-  params.policy = policies[reader.choice("policy", policies, nearest)];
+  std::size_t usual = 0;
+  while (usual + 1 < policies.size() && policies[usual] != params.policy) ++usual;
+  params.policy = policies[reader.choice("policy", policies, usual)];
   if (reader.has("fixed_landmark"))
     params.fixed_landmark = static_cast<LandmarkId>(reader.integer("fixed_landmark", {0, 1000000}));
   MapReader trigger = reader.map("trigger");
@@ -96,6 +96,7 @@ void read_look(MapReader& reader, LookParams& params) {
   params.trigger.limit_2_m =
       trigger.number("limit_2_m", {params.trigger.limit_1_m, 100.0}, params.trigger.limit_2_m);
   trigger.finish();
+  read_perception(reader, params);
   MapReader visibility = reader.map("visibility");
   params.visibility.max_view_angle_deg =
       visibility.number("max_view_angle_deg", {1.0, 85.0}, params.visibility.max_view_angle_deg);

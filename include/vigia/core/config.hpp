@@ -78,6 +78,15 @@ class MapReader {
   bool boolean(const std::string& key, bool fallback);
   std::string text(const std::string& key);
   std::string text(const std::string& key, const std::string& fallback);
+  /// A text with line breaks given in place, or the name of a file (relative to the file in which
+  /// the value was written) whose content takes the place of its name in the tree; nothing for
+  /// "default" and for an absent key, which is resolved to it. `name` stands for the file in
+  /// messages.
+  struct NamedText {
+    std::string text;
+    std::string name;
+  };
+  std::optional<NamedText> text_or_file(const std::string& key);
   /// One of @p choices; returns its index.
   std::size_t choice(const std::string& key, const std::vector<std::string>& choices);
   std::size_t choice(const std::string& key, const std::vector<std::string>& choices,

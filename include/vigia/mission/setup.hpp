@@ -12,6 +12,7 @@
 #include "vigia/localization/ekf.hpp"
 #include "vigia/pilot/pilot_params.hpp"
 #include "vigia/planner/look_trigger.hpp"
+#include "vigia/planner/perception_plan.hpp"
 #include "vigia/planner/route.hpp"
 #include "vigia/planner/visibility.hpp"
 #include "vigia/servo/gaze_controller.hpp"
@@ -21,7 +22,7 @@ namespace vigia::mission {
 
 /// When and how the robot looks.
 struct LookParams {
-  std::string policy = "nearest";
+  std::string policy = "fuzzy";
   std::optional<LandmarkId> fixed_landmark;
   planner::LookTriggerParams trigger;
   planner::VisibilityParams visibility;
@@ -32,6 +33,8 @@ struct LookParams {
   double exclude_s = 5.0;      ///< how long a landmark that failed is left out
   int rejections_to_drop = 5;  ///< gated frames in a row after which a look is given up
   int failures_to_lose = 3;    ///< looks in a row that showed nothing, after which belief is lost
+  planner::FuzzyRules rules;             ///< of the policy "fuzzy"
+  planner::PerceptionParams perception;  ///< of the policy "fuzzy"
 };
 
 /// How the robot looks around once it is lost.

@@ -10,8 +10,10 @@
 #include "vigia/core/belief.hpp"
 #include "vigia/core/information.hpp"
 #include "vigia/core/landmark.hpp"
+#include "vigia/core/odometry.hpp"
 #include "vigia/core/path.hpp"
 #include "vigia/core/random.hpp"
+#include "vigia/planner/perception_plan.hpp"
 #include "vigia/planner/visibility.hpp"
 
 namespace vigia::planner {
@@ -28,6 +30,18 @@ struct LookContext {
   const InformationModel& information;
   /// Landmarks that failed lately (not acquired), to be left out.
   const std::vector<LandmarkId>& excluded;
+  const HeadModel& head_model;
+  double speed_mps = 0.0;  ///< of the base, now
+  bool standing = false;   ///< the robot has stopped in order to look
+  const OdometryNoise& odometry;  ///< how the covariance grows on the way
+};
+
+/// What a policy has chosen.
+struct LookChoice {
+  LandmarkId landmark = 0;
+  std::optional<double> zoom_mm = {};      ///< planned; nothing: by the landmark's size
+  std::optional<double> suitability = {};  ///< in [0, 1], when the policy has such a measure
+  std::string reason = {};                 ///< for the story, a few words
 };
 
 /// Chooses which landmark to watch next.
@@ -36,15 +50,34 @@ class LookPolicy {
   virtual ~LookPolicy() = default;
   virtual std::string_view name() const = 0;
   /// The landmark to look at from where the robot believes to be, or nothing when none will do.
-  virtual std::optional<LandmarkId> choose(const LookContext& context) = 0;
+  virtual std::optional<LookChoice> choose(const LookContext& context) = 0;
+  /// The robot follows this path from now on; told before the first choice.
+  virtual void follow(const Path& /*path*/) {}
+  /// The zoom to wait with between two looks at a station of the path, when the policy plans one.
+  virtual std::optional<double> resting_zoom(double /*station_m*/) const { return std::nullopt; }
 };
 
-/// "fixed" (the landmark @p fixed), "random" (visible ones, drawn from @p stream) or "nearest"
-/// (visible). Null for another name.
-std::unique_ptr<LookPolicy> make_look_policy(const std::string& name,
-                                             std::optional<LandmarkId> fixed, RandomStream stream);
+/// What the policies are made from.
+struct LookPolicyParts {
+  std::optional<LandmarkId> fixed;  ///< the landmark of the policy "fixed"
+  RandomStream stream;              ///< of the policy "random"
+  // The rest is of the policy "fuzzy"; the references outlive it.
+  const LandmarkMap& landmarks;
+  const Visibility& visibility;
+  HeadModel head = {};
+  FuzzyRules rules = {};
+  PerceptionParams perception = {};
+};
+
+/// "fixed", "random" (visible ones), "nearest" (visible), "greedy" (least expected trace of the
+/// position's covariance after the look) or "fuzzy" (the perception plan of Armingol et al.). Null
+/// for another name.
+std::unique_ptr<LookPolicy> make_look_policy(const std::string& name, const LookPolicyParts& parts);
 
 /// The names that make_look_policy knows.
 std::vector<std::string> look_policy_names();
+
+/// Whether a landmark is visible from @p pose and not excluded.
+bool can_be_watched(const Landmark& landmark, const LookContext& context, const Pose2& pose);
 
 }  // namespace vigia::planner

@@ -25,6 +25,8 @@ struct GazeParams {
   double search_radius_px = 10.0;  ///< searching, the zoom widens until the landmark is this small
   double aim_gain = 10.0;          ///< 1/s, of the slew's final approach
   double motion_horizon_s = 1.0;   ///< the base's motion is foreseen for at most this long
+  double planned_least_px = 8.0;   ///< a planned zoom stays while the landmark is this large …
+  double planned_most = 0.5;       ///< … and at most this part of half the image's smaller side
   /// σ of the head's angles, for the zoom at which the landmark is still inside the image.
   double look_angle_deg = 0.3;
 };
@@ -63,11 +65,12 @@ struct GazeOutput {
 /// the landmark is released and the gaze is idle; an order that passes its expiry without a feature
 /// ends as expired.
 ///
-/// - idle: head and zoom rest; order() → slew.
+/// - idle: the head rests, the zoom goes to where rest_at() wants it; order() → slew.
 /// - slew: head and zoom go where the belief has the landmark; both there → acquire.
 /// - acquire: holds the aim, asks for the landmark; seen → track, after acquire_s → search.
-/// - track: servo on the image, the zoom holds the size; after dwell_s → released (idle), unseen
-///   for lost_grace_s → lost.
+/// - track: servo on the image, the zoom holds the size, or stays where the order has planned it as
+///   long as the landmark is neither too small nor too large there; after dwell_s → released (idle),
+///   unseen for lost_grace_s → lost.
 /// - lost: holds the aim where it was last seen; seen → track, after acquire_s → search.
 /// - search: spiral about the aim, the zoom widening; seen → track, after search_s → expired.
 ///
@@ -83,6 +86,8 @@ class GazeController {
   void order(const GazeOrder& order);
   /// Drops the order; the head stops and the gaze is idle.
   void cancel();
+  /// The zoom to wait with while there is no order; nothing: where it is.
+  void rest_at(std::optional<double> zoom_mm) { rest_zoom_mm_ = zoom_mm; }
   /// One control tick. A sighting counts only when the last output requested one.
   GazeOutput step(const GazeInput& input);
 
@@ -109,6 +114,10 @@ class GazeController {
   double arrival_time(const GazeInput& input, const HeadAngles& aim, double focal_px) const;
   bool out_of_field(const GazeInput& input, const Aim& aim) const;
 
+  /// The apparent radius to hold, px: the order's, or what is nearest to @p radius_px within the
+  /// bounds of a planned zoom.
+  double held_radius(double radius_px, const Intrinsics& intrinsics) const;
+  GazeOutput rest(const GazeInput& input) const;
   GazeOutput slew(const GazeInput& input, const Aim& aim);
   GazeOutput hold(const GazeInput& input, const Aim& aim);
   GazeOutput search(const GazeInput& input, const Landmark& landmark, const Aim& aim);
@@ -131,6 +140,7 @@ class GazeController {
   std::optional<Stamp> state_since_;  ///< unset until the first step of an order
   Stamp last_seen_;
   std::optional<Stamp> last_step_;
+  std::optional<double> rest_zoom_mm_;
   std::optional<Eigen::Vector3d> seen_at_r_;  ///< where this order's landmark was seen, base frame
 };
 

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "vigia/core/actuation.hpp"
+#include "vigia/core/camera.hpp"
+#include "vigia/core/head.hpp"
+
+namespace vigia::planner {
+
+/// Head and zoom as the planner foresees them.
+struct HeadModel {
+  HeadGeometry geometry;
+  HeadLimits limits;
+  ZoomCalibration zoom;
+  double radius_px = 24.0;  ///< apparent radius for which a zoom is set
+};
+
+}  // namespace vigia::planner

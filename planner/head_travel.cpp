@@ -1,0 +1,68 @@
+#include "head_travel.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vigia/planner/path_model.hpp"
+
+namespace vigia::planner {
+namespace {
+
+/// Time from rest to rest over a distance under limits of rate and acceleration.
+double axis_time(double distance, double rate, double acceleration) {
+  const double ramps = rate * rate / acceleration;
+  return distance <= ramps ? 2.0 * std::sqrt(distance / acceleration)
+                           : distance / rate + rate / acceleration;
+}
+
+/// The pan to turn by: the nearest turn of the wanted angle within the head's range.
+double pan_distance(double wanted, double from, const HeadLimits& limits) {
+  double best = std::abs(std::clamp(wanted, limits.pan_min, limits.pan_max) - from);
+  for (const double pan : {wanted - 2.0 * kPi, wanted + 2.0 * kPi})
+    if (pan >= limits.pan_min && pan <= limits.pan_max) best = std::min(best, std::abs(pan - from));
+  return best;
+}
+
+/// How far along the path the robot gets; its error across and in heading stays as it is.
+Pose2 moved_along(const LookContext& context, double advance_m) {
+  const Pose2 here = pose_on_path(context.path, context.station_m);
+  const Pose2 there = pose_on_path(
+      context.path, std::min(context.station_m + advance_m, context.path.length()));
+  return compose(there, compose(inverse(here), context.belief.pose));
+}
+
+}  // namespace
+
+double zoom_for(const Landmark& landmark, double range_m, const HeadModel& head) {
+  const auto radius = disc_radius(landmark);
+  if (!radius) return head.zoom.min_zoom_mm();
+  return head.zoom.zoom_for_focal(head.radius_px * range_m / *radius);
+}
+
+double travel_time(const HeadReading& from, const HeadAngles& aim, double zoom_mm,
+                   const HeadModel& head) {
+  const HeadLimits& limits = head.limits;
+  const double pan = pan_distance(aim.pan, from.angles.pan, limits);
+  const double tilt = std::abs(aim.tilt - from.angles.tilt);
+  return std::max({axis_time(pan, limits.rate, limits.acceleration),
+                   axis_time(tilt, limits.rate, limits.acceleration),
+                   std::abs(zoom_mm - from.zoom_mm) / limits.zoom_rate_mm_s});
+}
+
+Arrival foresee(const Landmark& landmark, std::optional<double> zoom_mm,
+                const LookContext& context) {
+  Arrival arrival{0.0, context.belief.pose, context.station_m};
+  for (int round = 0; round < 3; ++round) {
+    const Eigen::Vector3d p_r = to_isometry(arrival.pose).inverse() * landmark.centre_w();
+    const double range = (p_r - context.head_model.geometry.mount_r).norm();
+    const double zoom = zoom_mm ? *zoom_mm : zoom_for(landmark, range, context.head_model);
+    arrival.seconds = travel_time(context.head, aim_at(context.head_model.geometry, p_r), zoom,
+                                  context.head_model);
+    const double advance = context.speed_mps * arrival.seconds;
+    arrival.pose = advance > 0.0 ? moved_along(context, advance) : context.belief.pose;
+    arrival.station_m = std::min(context.station_m + advance, context.path.length());
+  }
+  return arrival;
+}
+
+}  // namespace vigia::planner

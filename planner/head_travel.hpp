@@ -1,0 +1,27 @@
+#pragma once
+
+#include "vigia/planner/look_policy.hpp"
+
+namespace vigia::planner {
+
+/// Where the robot will be when the head has turned to a landmark and the zoom is set.
+struct Arrival {
+  double seconds = 0.0;
+  Pose2 pose;
+  double station_m = 0.0;
+};
+
+/// The zoom position that shows a landmark at @p range_m with the wanted apparent radius.
+double zoom_for(const Landmark& landmark, double range_m, const HeadModel& head);
+
+/// Time for pan, tilt and zoom, each from rest to rest, the slowest counting, s.
+double travel_time(const HeadReading& from, const HeadAngles& aim, double zoom_mm,
+                   const HeadModel& head);
+
+/// Foresees the arrival (Armingol §3.1): the robot follows its path at its speed, unless it stands;
+/// the arrival and the aim depend on each other, three rounds settle them. @p zoom_mm: planned, or
+/// nothing for the zoom that suits the range.
+Arrival foresee(const Landmark& landmark, std::optional<double> zoom_mm,
+                const LookContext& context);
+
+}  // namespace vigia::planner
