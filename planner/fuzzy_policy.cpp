@@ -34,11 +34,7 @@ class FuzzyPolicy final : public LookPolicy {
                             parts_.perception);
   }
 
-  std::optional<double> resting_zoom(double station_m) const override {
-    const AreaPlan* area = plan_.at(station_m);
-    if (area == nullptr || !area->group) return std::nullopt;
-    return area->zoom_mm;
-  }
+  bool prepares() const override { return true; }
 
   std::optional<LookChoice> choose(const LookContext& context) override {
     if (context.standing) return choose_standing(context);
@@ -51,7 +47,7 @@ class FuzzyPolicy final : public LookPolicy {
   std::optional<Judged> judge(const Landmark& landmark, std::optional<double> zoom_mm,
                               const LookContext& context) {
     const Arrival arrival = foresee(landmark, zoom_mm, context);
-    if (!can_be_watched(landmark, context, arrival.pose)) return std::nullopt;
+    if (!can_be_held(landmark, arrival, context)) return std::nullopt;
     Judged judged;
     judged.landmark = &landmark;
     judged.zoom_mm = zoom_mm;
@@ -89,7 +85,7 @@ class FuzzyPolicy final : public LookPolicy {
       if (judged && judged->suitability >= parts_.perception.reject) usable.push_back(*judged);
     }
     const Judged* best = best_of(usable);
-    if (best == nullptr) return std::nullopt;
+    if (best == nullptr || best->value < parts_.perception.least_value) return std::nullopt;
     return choice(*best, "preselected for the control area, at its zoom");
   }
 

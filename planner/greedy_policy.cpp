@@ -33,7 +33,7 @@ class GreedyPolicy final : public LookPolicy {
     double least = 0.0;
     for (const Landmark& landmark : context.landmarks.all()) {
       const Arrival arrival = foresee(landmark, std::nullopt, context);
-      if (!can_be_watched(landmark, context, arrival.pose)) continue;
+      if (!can_be_held(landmark, arrival, context)) continue;
       const auto information = context.information.look_information(landmark, arrival.pose);
       if (!information) continue;
       const double trace =

@@ -136,7 +136,7 @@ double GazeController::arrival_time(const GazeInput& input, const HeadAngles& ai
 }
 
 double GazeController::held_radius(double radius_px, const Intrinsics& intrinsics) const {
-  if (!order_->zoom_mm) return order_->radius_px;
+  if (!active().zoom_mm) return active().radius_px;
   return std::clamp(radius_px, params_.planned_least_px,
                     std::max(params_.planned_most * half_image(intrinsics),
                              params_.planned_least_px));
@@ -144,11 +144,10 @@ double GazeController::held_radius(double radius_px, const Intrinsics& intrinsic
 
 GazeOutput GazeController::rest(const GazeInput& input) const {
   GazeOutput output;
-  if (!rest_zoom_mm_) return output;
-  const double wanted = std::clamp(*rest_zoom_mm_, zoom_.min_zoom_mm(), zoom_.max_zoom_mm());
-  output.command.zoom_mm_s =
-      std::clamp((wanted - input.head.zoom_mm) / params_.servo.hold_s, -limits_.zoom_rate_mm_s,
-                 limits_.zoom_rate_mm_s);
+  const Landmark* landmark = waiting_ ? input.landmarks.find(waiting_->landmark) : nullptr;
+  if (landmark == nullptr) return output;
+  const Aim aim = aim_for(input, *landmark);
+  output.command = drive(input, aim, aim.intercept, aim.focal_px);
   return output;
 }
 
@@ -172,7 +171,7 @@ double GazeController::wanted_focal(const GazeInput& input, const Landmark& land
   const double sigma =
       std::hypot(std::sqrt(std::max(variance, 0.0)), from_deg(params_.look_angle_deg));
 
-  const double planned = order_->zoom_mm ? zoom_.at(*order_->zoom_mm).px : 0.0;
+  const double planned = active().zoom_mm ? zoom_.at(*active().zoom_mm).px : 0.0;
   const double wanted_px = held_radius(planned * radius / range, input.intrinsics);
   const double by_size = wanted_px * range / radius;
   const double spread = std::tan(std::min(3.0 * sigma, 0.4 * kPi)) + radius / range;

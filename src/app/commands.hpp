@@ -7,6 +7,7 @@ namespace vigia::app {
 // Each adds a command to the program; running it sets @p status, the exit status. Wrong input
 // throws InputError.
 void add_run(CLI::App& app, int& status);
+void add_plan(CLI::App& app, int& status);
 void add_check(CLI::App& app, int& status);
 void add_track(CLI::App& app, int& status);
 void add_evaluate(CLI::App& app, int& status);

@@ -32,6 +32,7 @@ int run_program(int argc, char** argv) {
   app.require_subcommand(1);
   int status = 0;
   vigia::app::add_run(app, status);
+  vigia::app::add_plan(app, status);
   vigia::app::add_check(app, status);
   vigia::app::add_track(app, status);
   vigia::app::add_evaluate(app, status);

@@ -11,7 +11,7 @@ LookScheduler::LookScheduler(const MissionSetup& setup, const InformationModel& 
       visibility_(setup.world.plan, setup.robot.robot.head, setup.robot.robot.head_limits,
                   setup.look.visibility),
       head_model_{setup.robot.robot.head, setup.robot.robot.head_limits, setup.robot.zoom,
-                  setup.look.radius_px},
+                  setup.look.radius_px, setup.look.dwell_s},
       policy_(planner::make_look_policy(
           setup.look.policy,
           {setup.look.fixed_landmark, RandomStream(seed, "look policy"), setup.world.landmarks,
@@ -25,10 +25,11 @@ void LookScheduler::follow(const Path& path) {
   policy_->follow(path);
 }
 
-planner::LookDemand LookScheduler::demand(Stamp now, const Belief& belief, double travelled_m) {
+planner::LookDemand LookScheduler::demand(Stamp now, const Belief& belief, double travelled_m,
+                                          double remaining_m) {
   if (!asked_ || now - *asked_ >= Duration::from_seconds(setup_.look.period_s)) {
     asked_ = now;
-    last_ = trigger_.demand(belief, travelled_m);
+    last_ = trigger_.demand(belief, travelled_m, remaining_m);
   }
   return last_;
 }
@@ -57,6 +58,17 @@ std::optional<LookScheduler::Decision> LookScheduler::choose(Stamp now, const Be
   order.dwell_s = setup_.look.dwell_s;
   order.radius_px = setup_.look.radius_px;
   return Decision{order, choice->suitability, choice->reason};
+}
+
+std::optional<GazeOrder> LookScheduler::prepare(Stamp now, const Belief& belief,
+                                                const HeadReading& head, const Going& going) {
+  if (!policy_->prepares()) return std::nullopt;
+  if (prepared_ && now - *prepared_ < Duration::from_seconds(setup_.look.period_s)) return waiting_;
+  prepared_ = now;
+  const auto decision = choose(now, belief, head, going);
+  waiting_ = decision ? std::optional(decision->order) : std::nullopt;
+  if (decision) --next_look_;
+  return waiting_;
 }
 
 void LookScheduler::failed(Stamp now, LandmarkId landmark) {

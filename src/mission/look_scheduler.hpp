@@ -17,15 +17,11 @@ class LookScheduler {
   LookScheduler(const MissionSetup& setup, const InformationModel& information, std::uint64_t seed);
 
   /// What is demanded now; the planner's slow rate is kept inside.
-  planner::LookDemand demand(Stamp now, const Belief& belief, double travelled_m);
+  planner::LookDemand demand(Stamp now, const Belief& belief, double travelled_m,
+                             double remaining_m);
 
   /// The robot follows this path from now on. It must outlive the scheduler's use of it.
   void follow(const Path& path);
-  /// The zoom to wait with between looks, when the policy plans one.
-  std::optional<double> resting_zoom(double station_m) const {
-    return policy_->resting_zoom(station_m);
-  }
-
   /// The base as the next look finds it.
   struct Going {
     double station_m = 0.0;
@@ -41,6 +37,11 @@ class LookScheduler {
   /// The next gaze order, or nothing when no landmark will do.
   std::optional<Decision> choose(Stamp now, const Belief& belief, const HeadReading& head,
                                  const Going& going);
+
+  /// What a look now would be, for head and zoom to wait there; nothing when the policy does not
+  /// prepare. Takes no number and is asked at the planner's slow rate.
+  std::optional<GazeOrder> prepare(Stamp now, const Belief& belief, const HeadReading& head,
+                                   const Going& going);
 
   /// A number for an acquisition that no policy chose (a stop of the search).
   LookId next_look() { return next_look_++; }
@@ -61,6 +62,8 @@ class LookScheduler {
   planner::LookDemand last_ = planner::LookDemand::none;
   std::optional<Stamp> asked_;
   LookId next_look_ = 1;
+  std::optional<Stamp> prepared_;
+  std::optional<GazeOrder> waiting_;
   std::vector<std::pair<LandmarkId, Stamp>> failures_;
 };
 

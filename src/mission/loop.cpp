@@ -191,14 +191,15 @@ void Loop::plan() {
     begin_recovery();
     return;
   }
-  const auto demand = scheduler_.demand(now_, belief(), travelled_m_);
+  const auto demand = scheduler_.demand(now_, belief(), travelled_m_,
+                                          pilot_.path().length() - pilot_.station());
   // A landmark that is not where the belief has it is reason enough to stand still.
   const bool stop = demand == planner::LookDemand::stopped || failed_in_a_row_ > 0;
   tell_limits(demand, stop);
   stopped_to_look_ = stop;
+  const LookScheduler::Going going{pilot_.station(), odometry_.trans / dt_.seconds(), stop};
   const bool wanted = stop || demand != planner::LookDemand::none;
   if (wanted && gaze_.state() == GazeState::idle) {
-    const LookScheduler::Going going{pilot_.station(), odometry_.trans / dt_.seconds(), stop};
     if (const auto decision = scheduler_.choose(now_, belief(), head_, going)) {
       const GazeOrder& order = decision->order;
       look_ = order.look;
@@ -215,6 +216,8 @@ void Loop::plan() {
       tell("look", numbers, {{"reason", decision->reason}});
     }
   }
+  const bool idle = gaze_.state() == GazeState::idle;
+  gaze_.rest_at(idle ? scheduler_.prepare(now_, belief(), head_, going) : std::nullopt);
   timing_.plan += watch.elapsed_ms();
 }
 
@@ -260,7 +263,6 @@ void Loop::steer() {
   servo::GazeInput input{
       now_, head_, expected, belief(), setup_.world.landmarks, sensor_.intrinsics, std::nullopt};
   if (observation_ && order) input.sighting = gaze_sighting(*observation_, order->landmark);
-  gaze_.rest_at(scheduler_.resting_zoom(pilot_.station()));
   const servo::GazeOutput output = gaze_.step(input);
   timing_.servo += watch.elapsed_ms();
   if (order) {

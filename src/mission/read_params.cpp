@@ -95,6 +95,9 @@ void read_look(MapReader& reader, LookParams& params) {
   params.trigger.limit_1_m = trigger.number("limit_1_m", {0.0, 100.0}, params.trigger.limit_1_m);
   params.trigger.limit_2_m =
       trigger.number("limit_2_m", {params.trigger.limit_1_m, 100.0}, params.trigger.limit_2_m);
+  params.trigger.goal_m = trigger.number("goal_m", {0.0, 1000.0}, params.trigger.goal_m);
+  params.trigger.goal_limit_m =
+      trigger.number("goal_limit_m", {0.0, 100.0}, params.trigger.goal_limit_m);
   trigger.finish();
   read_perception(reader, params);
   MapReader visibility = reader.map("visibility");

@@ -1,5 +1,7 @@
 #include "vigia/planner/look_policy.hpp"
 
+#include "look_room.hpp"
+
 #include <cmath>
 #include <map>
 
@@ -11,78 +13,55 @@ namespace {
 
 using ::testing::ElementsAre;
 
-class NoInformation final : public InformationModel {
- public:
-  std::optional<Eigen::Matrix3d> look_information(const Landmark&, const Pose2&) const override {
-    return std::nullopt;
-  }
-};
-
-/// A room with three discs in sight (ids 1, 2, 3 at growing range) and one hidden by a wall (4).
 class LookPolicyTest : public ::testing::Test {
  protected:
-  LookPolicyTest()
-      : plan_({{0.0, 0.0}, {12.0, 0.0}, {12.0, 7.0}, {0.0, 7.0}}, 2.8,
-              {{{2.0, 2.5}, {2.0, 4.5}, 2.8}}, {}),
-        visibility_(plan_, HeadGeometry{}, HeadLimits{}, VisibilityParams{}),
-        path_({{3.0, 3.5}, {9.0, 3.5}}),
-        landmarks_({{1, wall_mount({4.0, 7.0, 1.6}, -0.5 * kPi), DiscShape{0.1}},
-                    {2, wall_mount({6.0, 0.0, 1.6}, 0.5 * kPi), DiscShape{0.1}},
-                    {3, wall_mount({12.0, 3.5, 1.6}, kPi), DiscShape{0.1}},
-                    {4, wall_mount({0.0, 3.5, 1.6}, 0.0), DiscShape{0.1}}}) {
-    belief_.pose = {4.0, 3.5, 0.0};
-  }
-
   std::optional<LandmarkId> choose(LookPolicy& policy) {
-    return policy.choose(
-        {Stamp{}, belief_, head_, 0.0, path_, landmarks_, visibility_, information_, excluded_});
+    const auto choice = policy.choose(room_.context());
+    return choice ? std::optional(choice->landmark) : std::nullopt;
+  }
+  std::unique_ptr<LookPolicy> make(const std::string& name, std::optional<LandmarkId> fixed = {},
+                                   std::uint64_t seed = 1) const {
+    return make_look_policy(name, room_.parts(fixed, seed));
   }
 
-  FloorPlan plan_;
-  Visibility visibility_;
-  Path path_;
-  LandmarkMap landmarks_;
-  Belief belief_;
-  HeadReading head_;
-  NoInformation information_;
-  std::vector<LandmarkId> excluded_;
+  test::LookRoom room_;
 };
 
 TEST_F(LookPolicyTest, EveryNameMakesThePolicyOfThatName) {
-  EXPECT_THAT(look_policy_names(), ElementsAre("fixed", "random", "nearest"));
+  EXPECT_THAT(look_policy_names(), ElementsAre("fixed", "random", "nearest", "greedy", "fuzzy"));
   for (const std::string& name : look_policy_names())
-    EXPECT_EQ(make_look_policy(name, 1, RandomStream(1, "look"))->name(), name);
-  EXPECT_EQ(make_look_policy("clever", 1, RandomStream(1, "look")), nullptr);
+    EXPECT_EQ(make(name, 1)->name(), name);
+  EXPECT_EQ(make("clever", 1), nullptr);
 }
 
 TEST_F(LookPolicyTest, NearestTakesTheNearestVisibleOne) {
-  const auto policy = make_look_policy("nearest", std::nullopt, RandomStream(1, "look"));
+  const auto policy = make("nearest", std::nullopt, 1);
   EXPECT_EQ(choose(*policy), 1);
-  belief_.pose.x = 6.5;
+  room_.belief.pose.x = 6.5;
   EXPECT_EQ(choose(*policy), 2);
 }
 
 TEST_F(LookPolicyTest, NearestPassesOverTheExcludedAndTheHidden) {
-  const auto policy = make_look_policy("nearest", std::nullopt, RandomStream(1, "look"));
-  excluded_ = {1, 2};
+  const auto policy = make("nearest", std::nullopt, 1);
+  room_.excluded = {1, 2};
   EXPECT_EQ(choose(*policy), 3);
-  excluded_ = {1, 2, 3};
+  room_.excluded = {1, 2, 3};
   EXPECT_EQ(choose(*policy), std::nullopt);
 }
 
 TEST_F(LookPolicyTest, FixedLooksAtItsLandmarkOrAtNothing) {
-  const auto policy = make_look_policy("fixed", 3, RandomStream(1, "look"));
+  const auto policy = make("fixed", 3, 1);
   EXPECT_EQ(choose(*policy), 3);
-  excluded_ = {3};
+  room_.excluded = {3};
   EXPECT_EQ(choose(*policy), std::nullopt);
-  EXPECT_EQ(choose(*make_look_policy("fixed", 4, RandomStream(1, "look"))), std::nullopt);
-  EXPECT_EQ(choose(*make_look_policy("fixed", 77, RandomStream(1, "look"))), std::nullopt);
-  EXPECT_EQ(choose(*make_look_policy("fixed", std::nullopt, RandomStream(1, "look"))),
+  EXPECT_EQ(choose(*make("fixed", 4, 1)), std::nullopt);
+  EXPECT_EQ(choose(*make("fixed", 77, 1)), std::nullopt);
+  EXPECT_EQ(choose(*make("fixed", std::nullopt, 1)),
             std::nullopt);
 }
 
 TEST_F(LookPolicyTest, RandomDrawsTheVisibleOnesEquallyOften) {
-  const auto policy = make_look_policy("random", std::nullopt, RandomStream(1, "look"));
+  const auto policy = make("random", std::nullopt, 1);
   std::map<LandmarkId, int> counts;
   constexpr int kDraws = 3000;
   for (int i = 0; i < kDraws; ++i) ++counts[choose(*policy).value()];
@@ -93,14 +72,14 @@ TEST_F(LookPolicyTest, RandomDrawsTheVisibleOnesEquallyOften) {
 }
 
 TEST_F(LookPolicyTest, RandomRepeatsItselfUnderTheSameSeed) {
-  const auto first = make_look_policy("random", std::nullopt, RandomStream(5, "look"));
-  const auto second = make_look_policy("random", std::nullopt, RandomStream(5, "look"));
+  const auto first = make("random", std::nullopt, 5);
+  const auto second = make("random", std::nullopt, 5);
   for (int i = 0; i < 50; ++i) EXPECT_EQ(choose(*first), choose(*second));
 }
 
 TEST_F(LookPolicyTest, RandomChoosesNothingWhenNothingIsVisible) {
-  const auto policy = make_look_policy("random", std::nullopt, RandomStream(5, "look"));
-  excluded_ = {1, 2, 3};
+  const auto policy = make("random", std::nullopt, 5);
+  room_.excluded = {1, 2, 3};
   EXPECT_EQ(choose(*policy), std::nullopt);
 }
 

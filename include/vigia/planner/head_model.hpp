@@ -12,6 +12,7 @@ struct HeadModel {
   HeadLimits limits;
   ZoomCalibration zoom;
   double radius_px = 24.0;  ///< apparent radius for which a zoom is set
+  double dwell_s = 1.0;     ///< how long a landmark is watched
 };
 
 }  // namespace vigia::planner

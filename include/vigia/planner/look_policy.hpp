@@ -53,8 +53,8 @@ class LookPolicy {
   virtual std::optional<LookChoice> choose(const LookContext& context) = 0;
   /// The robot follows this path from now on; told before the first choice.
   virtual void follow(const Path& /*path*/) {}
-  /// The zoom to wait with between two looks at a station of the path, when the policy plans one.
-  virtual std::optional<double> resting_zoom(double /*station_m*/) const { return std::nullopt; }
+  /// Whether head and zoom wait, between two looks, where the policy would look now.
+  virtual bool prepares() const { return false; }
 };
 
 /// What the policies are made from.

@@ -10,6 +10,8 @@ struct LookTriggerParams {
   double distance_m = 1.0;  ///< travelled (by odometry) between looks
   double limit_1_m = 0.05;  ///< √λ_max above which the robot relocalises in motion
   double limit_2_m = 0.10;  ///< √λ_max above which it stops first
+  double goal_m = 0.0;      ///< of the path's end, on which goal_limit_m takes limit_1_m's place
+  double goal_limit_m = 0.02;
 };
 
 enum class LookDemand { none, in_motion, stopped };
@@ -21,7 +23,8 @@ class LookTrigger {
 
   /// @p travelled_m: distance driven since the mission's start, by odometry. A stop, once demanded,
   /// is demanded until the uncertainty is below limit_1_m again.
-  LookDemand demand(const Belief& belief, double travelled_m);
+  /// @p remaining_m: to the path's end.
+  LookDemand demand(const Belief& belief, double travelled_m, double remaining_m);
   /// A look was fused at this distance.
   void looked(double travelled_m) { last_look_m_ = travelled_m; }
 

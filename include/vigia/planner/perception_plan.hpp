@@ -16,6 +16,9 @@ struct PerceptionParams {
   double visible_share = 0.5;   ///< seen from this share of an area, a landmark counts as visible
   double usable_share = 0.8;    ///< seen from this share of a control position's disc, as usable there
   double reject = 0.25;         ///< a landmark of less suitability is rejected
+  /// A preselected landmark whose suitability times that of its direction now is less is passed over
+  /// in favour of all that are visible.
+  double least_value = 0.3;
   double zoom_cost_per_s = 0.2; ///< suitability that a second of the zoom's travel outweighs
   double least_radius_px = 10.0;  ///< at the area's zoom; the margin that needs no optics move …
   double most_radius_px = 80.0;   ///< … on both sides

@@ -65,7 +65,7 @@ struct GazeOutput {
 /// the landmark is released and the gaze is idle; an order that passes its expiry without a feature
 /// ends as expired.
 ///
-/// - idle: the head rests, the zoom goes to where rest_at() wants it; order() → slew.
+/// - idle: head and zoom rest, or wait where rest_at() wants them; order() → slew.
 /// - slew: head and zoom go where the belief has the landmark; both there → acquire.
 /// - acquire: holds the aim, asks for the landmark; seen → track, after acquire_s → search.
 /// - track: servo on the image, the zoom holds the size, or stays where the order has planned it as
@@ -86,8 +86,8 @@ class GazeController {
   void order(const GazeOrder& order);
   /// Drops the order; the head stops and the gaze is idle.
   void cancel();
-  /// The zoom to wait with while there is no order; nothing: where it is.
-  void rest_at(std::optional<double> zoom_mm) { rest_zoom_mm_ = zoom_mm; }
+  /// Where head and zoom wait while there is no order, as if to begin this one; nothing: they rest.
+  void rest_at(const std::optional<GazeOrder>& waiting) { waiting_ = waiting; }
   /// One control tick. A sighting counts only when the last output requested one.
   GazeOutput step(const GazeInput& input);
 
@@ -117,6 +117,8 @@ class GazeController {
   /// The apparent radius to hold, px: the order's, or what is nearest to @p radius_px within the
   /// bounds of a planned zoom.
   double held_radius(double radius_px, const Intrinsics& intrinsics) const;
+  /// The order that is carried out or waited for.
+  const GazeOrder& active() const { return order_ ? *order_ : *waiting_; }
   GazeOutput rest(const GazeInput& input) const;
   GazeOutput slew(const GazeInput& input, const Aim& aim);
   GazeOutput hold(const GazeInput& input, const Aim& aim);
@@ -140,7 +142,7 @@ class GazeController {
   std::optional<Stamp> state_since_;  ///< unset until the first step of an order
   Stamp last_seen_;
   std::optional<Stamp> last_step_;
-  std::optional<double> rest_zoom_mm_;
+  std::optional<GazeOrder> waiting_;
   std::optional<Eigen::Vector3d> seen_at_r_;  ///< where this order's landmark was seen, base frame
 };
 
