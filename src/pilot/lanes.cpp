@@ -72,7 +72,7 @@ void Lanes::lay_out(const Path& path, const std::vector<double>& stations,
     for (int lane = 0; lane < lanes_; ++lane) {
       Node& n = node(static_cast<int>(layer), lane);
       n.p = on_path + offset(lane) * normal;
-      n.risk = risk(n.p, lane == lanes_ / 2, things);
+      n.risk = risk(n.p, lane == middle(), things);
       n.cost = kInfinite;
     }
   }
@@ -114,7 +114,7 @@ std::optional<WayRound> Lanes::search(const Path& path, double station, const Ve
 
   // At the path's end only the end itself will do.
   const bool to_the_end = stations.back() >= path.length();
-  int best = lanes_ / 2;
+  int best = middle();
   for (int lane = 0; lane < lanes_ && !to_the_end; ++lane)
     if (node(layers - 1, lane).cost < node(layers - 1, best).cost) best = lane;
   if (std::isinf(node(layers - 1, best).cost)) return std::nullopt;

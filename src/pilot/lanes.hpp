@@ -51,11 +51,13 @@ class Lanes {
   void link_first(const Eigen::Vector2d& robot, const std::vector<RoundObstacle>& things);
   void link(int layer, const std::vector<RoundObstacle>& things);
   Node& node(int layer, int lane) {
-    return nodes_[static_cast<std::size_t>(layer * lanes_ + lane)];
+    return nodes_[static_cast<std::size_t>(layer) * static_cast<std::size_t>(lanes_) +
+                  static_cast<std::size_t>(lane)];
   }
   /// Cost of being on a lane, for the length of a step.
   double aside(int lane) const;
-  double offset(int lane) const { return params_.lane_m * (lane - lanes_ / 2); }
+  int middle() const { return lanes_ / 2; }
+  double offset(int lane) const { return params_.lane_m * (lane - middle()); }
 
   const FloorPlan* plan_;
   double robot_radius_m_;
