@@ -85,10 +85,10 @@ void DriveScorer::Impl::score_localizer(const mission::Tick& tick, std::size_t i
   const bool fused = update && update->status == localization::UpdateStatus::fused;
   if (update) ++count_of(sum.score, update->status);
   if (fused && update->landmark) {
-    const auto& angle = tick.truth.look_angle_error;
-    sum.bound.update(tick.truth.pose, *setup->world.landmarks.find(*update->landmark),
-                     tick.observation->sensor,
-                     {angle.pan, angle.tilt, tick.truth.look_log_focal_error},
+    const sim::RobotTruth& truth = tick.truth_at_exposure;
+    const auto& angle = truth.look_angle_error;
+    sum.bound.update(truth.pose, *setup->world.landmarks.find(*update->landmark),
+                     tick.observation->sensor, {angle.pan, angle.tilt, truth.look_log_focal_error},
                      localization::measured_disc_covariance(*tick.observation));
   }
   const Eigen::Vector3d error = difference(belief.pose, tick.truth.pose);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "late_frames.hpp"
 #include "look_around.hpp"
 #include "look_scheduler.hpp"
 #include "timed_frame.hpp"
@@ -33,7 +34,8 @@ class Loop {
   void localize(const EllipseObservation& observation);
   void plan();
   void steer();
-  void recover(const imaging::Frame& frame);
+  void recover(const imaging::Frame* frame);
+  std::optional<servo::GazeSighting> sighting_now() const;
   void begin_recovery();
   void relocalize();
   void replan(const Pose2& from);
@@ -62,6 +64,10 @@ class Loop {
   pilot::PathFollower pilot_;
   LookAround look_around_;
   std::vector<Eigen::Vector2d> waypoints_;  ///< of the path that the pilot follows
+
+  LateFrames late_frames_;
+  RecentMotion motion_;
+  std::unique_ptr<ExposedFrame> delivered_;  ///< the frame that arrived in this tick
 
   Stamp now_;
   Duration dt_;

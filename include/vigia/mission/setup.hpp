@@ -49,6 +49,7 @@ struct MissionSetup {
   WorldMap world;
   std::shared_ptr<const sim::Appearance> appearance;
   sim::RobotSetup robot;
+  sim::DisturbanceParams disturbances;  ///< of the world, which nobody but the simulator knows
 
   Pose2 start;                 ///< true start
   Prior prior;                 ///< what the localizers are told of it
