@@ -79,7 +79,7 @@ std::vector<BodyPart> body_parts(const Person& person) {
   for (const double side : {1.0, -1.0}) {
     const double step = 0.8 * swing * side;
     figure.ball({step + 0.18, 0.36 * side, 0.02}, {0.52, 0.20, 0.028}, wears.shoes);
-    figure.limb({step, 0.36 * side, 0.03}, {0.0, 0.33 * side, 0.50}, 0.22, 0.20, 0.6,
+    figure.limb({step, 0.34 * side, 0.03}, {0.0, 0.28 * side, 0.49}, 0.22, 0.20, 0.4,
                 wears.trousers, 0.3F * wears.shirt_pattern);
     figure.limb({-0.6 * step, 0.84 * side, 0.43}, {0.0, 0.72 * side, 0.80}, 0.14, 0.14, 0.5,
                 wears.shirt, wears.shirt_pattern);
@@ -87,10 +87,10 @@ std::vector<BodyPart> body_parts(const Person& person) {
   }
   figure.limb({0.0, 0.0, 0.47}, {0.0, 0.0, 0.81}, 0.42, 0.62, 0.2, wears.shirt,
               wears.shirt_pattern);
-  figure.ball({0.0, 0.0, 0.81}, {0.50, 0.86, 0.035}, wears.shirt);
+  figure.ball({0.0, 0.0, 0.81}, {0.48, 0.80, 0.045}, wears.shirt);
   figure.limb({0.0, 0.0, 0.82}, {0.06, 0.0, 0.90}, 0.22, 0.22, 0.0, wears.skin, 0.0F);
-  figure.ball({0.08, 0.0, 0.925}, {0.38, 0.31, 0.068}, wears.skin);
-  figure.ball({-0.02, 0.0, 0.945}, {0.40, 0.34, 0.060}, wears.hair);
+  figure.ball({0.08, 0.0, 0.920}, {0.38, 0.31, 0.068}, wears.skin);
+  figure.ball({-0.02, 0.0, 0.940}, {0.40, 0.34, 0.060}, wears.hair);
   return figure.parts;
 }
 

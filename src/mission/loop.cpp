@@ -28,6 +28,9 @@ std::unique_ptr<localization::Localizer> make_localizer(const std::string& name,
 localization::RelocalizerParams relocalizer_params(const MissionSetup& setup) {
   localization::RelocalizerParams params;
   params.sensor = setup.ekf.sensor;
+  params.centre_floor_px = std::max(params.centre_floor_px, setup.ekf.centre_floor_px);
+  params.size_floor = std::max(params.size_floor, setup.ekf.size_floor);
+  params.explained_share = setup.recovery.explained_share;
   return params;
 }
 
