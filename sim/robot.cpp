@@ -30,6 +30,11 @@ void move_axis(double& angle, double& rate, const AxisStep& step, double low, do
   rate = stopped ? 0.0 : step.rate;
 }
 
+/// An encoder with play follows its axis.
+void drag(double& encoder, double axis, double play) {
+  encoder = std::clamp(encoder, axis - 0.5 * play, axis + 0.5 * play);
+}
+
 Pose2 along_arc(const Pose2& pose, double distance, double turn) {
   const double half = 0.5 * turn;
   const double sinc = std::abs(half) < 1e-6 ? 1.0 - half * half / 6.0 : std::sin(half) / half;
@@ -49,6 +54,7 @@ Robot::Robot(const RobotParams& params, const Pose2& start, double zoom_mm, std:
       zoom_min_mm_(-std::numeric_limits<double>::infinity()),
       zoom_max_mm_(std::numeric_limits<double>::infinity()),
       odometry_pose_(start),
+      wheel_pose_(start),
       odometry_random_(seed, "odometry"),
       look_random_(seed, "look"),
       reading_random_(seed, "head reading") {
@@ -57,6 +63,7 @@ Robot::Robot(const RobotParams& params, const Pose2& start, double zoom_mm, std:
   const HeadLimits& limits = params_.head_limits;
   truth_.head.pan = std::clamp(0.0, limits.pan_min, limits.pan_max);
   truth_.head.tilt = std::clamp(0.0, limits.tilt_min, limits.tilt_max);
+  encoder_ = truth_.head;
   Robot::init();
 }
 
@@ -95,14 +102,19 @@ void Robot::step(double h) {
   const AxisStep drive = ramp(truth_.base.v, base_command_.v, base.acceleration, h);
   const AxisStep turn = ramp(truth_.base.w, base_command_.w, base.turn_acceleration, h);
   truth_.base = {drive.rate, turn.rate};
-  truth_.pose = along_arc(truth_.pose, drive.distance, turn.distance);
-  turned_ += turn.distance;
+  const ArcMotion wheels{drive.distance, turn.distance};
+  const ArcMotion ground = slip_ ? slip_->over_ground(wheels) : wheels;
+  truth_.pose = along_arc(truth_.pose, ground.distance, ground.turn);
+  wheel_pose_ = along_arc(wheel_pose_, wheels.distance, wheels.turn);
+  turned_ += wheels.turn;
 
   const HeadAngles& rates = truth_.head_rates;
   const AxisStep pan = ramp(rates.pan, head_command_.angles.pan, head.acceleration, h);
   const AxisStep tilt = ramp(rates.tilt, head_command_.angles.tilt, head.acceleration, h);
   move_axis(truth_.head.pan, truth_.head_rates.pan, pan, head.pan_min, head.pan_max);
   move_axis(truth_.head.tilt, truth_.head_rates.tilt, tilt, head.tilt_min, head.tilt_max);
+  drag(encoder_.pan, truth_.head.pan, backlash_);
+  drag(encoder_.tilt, truth_.head.tilt, backlash_);
   truth_.zoom_mm =
       std::clamp(truth_.zoom_mm + head_command_.zoom_mm_s * h, zoom_min_mm_, zoom_max_mm_);
 }
@@ -116,14 +128,14 @@ void Robot::begin_look() {
 
 OdometryIncrement Robot::read_odometry() {
   OdometryIncrement u =
-      chord_increment(odometry_pose_, truth_.pose, turned_, odometry_stamp_, truth_.stamp);
+      chord_increment(odometry_pose_, wheel_pose_, turned_, odometry_stamp_, truth_.stamp);
   const Eigen::Matrix3d covariance = control_covariance(u, params_.odometry);
   u.rot1 += std::sqrt(covariance(0, 0)) * odometry_random_.normal();
   u.trans += std::sqrt(covariance(1, 1)) * odometry_random_.normal();
   u.rot2 += std::sqrt(covariance(2, 2)) * odometry_random_.normal();
 
   odometry_stamp_ = truth_.stamp;
-  odometry_pose_ = truth_.pose;
+  odometry_pose_ = wheel_pose_;
   turned_ = 0.0;
   return u;
 }
@@ -132,16 +144,33 @@ HeadReading Robot::read_head() {
   HeadReading reading;
   const double white = params_.sensor.reading_angle;
   reading.angles.pan =
-      truth_.head.pan - truth_.look_angle_error.pan - white * reading_random_.normal();
+      encoder_.pan - truth_.look_angle_error.pan - white * reading_random_.normal();
   reading.angles.tilt =
-      truth_.head.tilt - truth_.look_angle_error.tilt - white * reading_random_.normal();
+      encoder_.tilt - truth_.look_angle_error.tilt - white * reading_random_.normal();
   reading.rates = truth_.head_rates;
   reading.zoom_mm = truth_.zoom_mm;
   return reading;
 }
 
+void Robot::kidnap(const Pose2& pose) {
+  truth_.pose = pose;
+  truth_.base = {};
+  base_command_ = {};
+}
+
 Eigen::Isometry3d Robot::camera_pose() const {
-  return to_isometry(truth_.pose) * camera_in_base(params_.head, truth_.head);
+  return camera_at(truth_.pose, truth_.head);
+}
+
+Eigen::Isometry3d Robot::camera_pose_after(double s) const {
+  return camera_at(
+      along_arc(truth_.pose, truth_.base.v * s, truth_.base.w * s),
+      {truth_.head.pan + truth_.head_rates.pan * s, truth_.head.tilt + truth_.head_rates.tilt * s});
+}
+
+Eigen::Isometry3d Robot::camera_at(const Pose2& pose, const HeadAngles& head) const {
+  const Eigen::Isometry3d rMc = camera_in_base(params_.head, head);
+  return mounting_ ? to_isometry(pose) * *mounting_ * rMc : to_isometry(pose) * rMc;
 }
 
 }  // namespace vigia::sim

@@ -101,7 +101,8 @@ void Robot::setPosition(const vpRobot::vpControlFrameType frame, const vpColVect
   truth_.base = {};
   truth_.head_rates = {};
   command({}, {});
-  odometry_pose_ = truth_.pose;
+  encoder_ = truth_.head;
+  odometry_pose_ = wheel_pose_ = truth_.pose;
   odometry_stamp_ = truth_.stamp;
   turned_ = 0.0;
 }

@@ -1,6 +1,9 @@
 #include "vigia/sim/scene.hpp"
 
+#include "blurred_frame.hpp"
+#include "body_view.hpp"
 #include "decal.hpp"
+#include "light_rows.hpp"
 #include "pixel_noise.hpp"
 #include "rays.hpp"
 #include "simd.hpp"
@@ -10,6 +13,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
+#include <utility>
 
 #include "vigia/core/random.hpp"
 #include "vigia/sim/appearance.hpp"
@@ -20,6 +25,7 @@ namespace {
 using imaging::Window;
 
 constexpr int kTile = 16;
+constexpr ViewId kPerson = 0xfffe;  ///< the winner of a pixel that shows somebody
 constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
 
 /// The first surface of @p surfaces among the faces that carries a picture of this frame.
@@ -55,6 +61,8 @@ DecalShape shape_of(ClutterKind kind) {
       return DecalShape::square;
     case ClutterKind::half_disc:
       return DecalShape::half_disc;
+    case ClutterKind::disc:
+      return DecalShape::disc;
     case ClutterKind::blob:
       break;
   }
@@ -66,6 +74,13 @@ Eigen::Isometry3d frame_of(const Clutter& clutter) {
                               ? Eigen::Isometry3d(Eigen::Translation3d(clutter.centre_w))
                               : wall_mount(clutter.centre_w, clutter.normal_yaw);
   return wMd * Eigen::AngleAxisd(clutter.turn, Eigen::Vector3d::UnitZ());
+}
+
+VIGIA_PIXEL_LOOP
+void evaluate(const Linear& f, const float* __restrict x, const float* __restrict y, int count,
+              float* __restrict out) {
+  const Linear k = f;
+  for (int i = 0; i < count; ++i) out[i] = k.a * x[i] + k.b * y[i] + k.c;
 }
 
 VIGIA_PIXEL_LOOP
@@ -97,7 +112,7 @@ struct Scene::Impl {
                  frame_of(clutter),
                  clutter.size_m,
                  static_cast<float>(clutter.grey),
-                 false,
+                 clutter.kind == ClutterKind::disc,
                  0};
       mark.surface = face_under(surfaces, mark.wMd, 0.02);
       if (mark.surface != kNowhere) decals.push_back(mark);
@@ -143,14 +158,17 @@ struct Run {
 
 }  // namespace
 
-/// One exposure. The arithmetic of a pixel depends on its (u, v), on the tile of the frame's grid
-/// that it lies in, and on the exposure; never on the window.
-class SceneFrame : public imaging::Frame {
+/// One instant of an exposure. The arithmetic of a pixel depends on its (u, v), on the tile of the
+/// frame's grid that it lies in, and on the exposure; never on the window.
+class SceneFrame : public imaging::Frame, public Radiance {
  public:
-  SceneFrame(const Scene::Impl& scene, const Eigen::Isometry3d& wMc, const Intrinsics& intrinsics,
-             Stamp stamp, const ImagingParams& params)
+  SceneFrame(const Scene::Impl& scene, const Exposure::Instant& instant,
+             const std::optional<LightNow>& light, const Intrinsics& intrinsics, Stamp stamp,
+             const ImagingParams& params)
       : scene_(scene),
-        wMc_(wMc),
+        wMc_(instant.wMc),
+        people_(instant.people),
+        light_now_(light),
         intrinsics_(intrinsics),
         params_(params),
         noise_(scene.seed, stamp) {}
@@ -161,7 +179,27 @@ class SceneFrame : public imaging::Frame {
   void read_grey(const Window& window, unsigned char* out, std::ptrdiff_t stride) const override {
     render(window, [&](int v, Row& row) {
       paint_decals(window.u, v, window.width, row, row.grey.data());
-      finish(row.grey.data(), window.u, v, 0, window.width, out + (v - window.v) * stride);
+      shine(row, row.grey.data(), window.width);
+      noise_.add_and_round(row.grey.data(), static_cast<float>(params_.noise_sigma), window.u, v, 0,
+                           window.width, out + (v - window.v) * stride);
+    });
+  }
+
+  void add_grey(const Window& window, std::vector<float>& sum) const override {
+    render(window, [&](int v, Row& row) {
+      paint_decals(window.u, v, window.width, row, row.grey.data());
+      shine(row, row.grey.data(), window.width);
+      add(row.grey.data(), window.width, row_of(sum, window, v));
+    });
+  }
+
+  void add_channel(const Window& window, int channel, std::vector<float>& sum) const override {
+    std::vector<float> levels(static_cast<std::size_t>(window.width));
+    render(window, [&](int v, Row& row) {
+      tint(row, channel, levels);
+      paint_decals(window.u, v, window.width, row, levels.data());
+      shine(row, levels.data(), window.width);
+      add(levels.data(), window.width, row_of(sum, window, v));
     });
   }
 
@@ -174,7 +212,9 @@ class SceneFrame : public imaging::Frame {
       for (int c = 0; c < 3; ++c) {
         tint(row, c, channel);
         paint_decals(window.u, v, window.width, row, channel.data());
-        finish(channel.data(), window.u, v, params_.colour ? c : 0, window.width, bytes.data());
+        shine(row, channel.data(), window.width);
+        noise_.add_and_round(channel.data(), static_cast<float>(params_.noise_sigma), window.u, v,
+                             params_.colour ? c : 0, window.width, bytes.data());
         for (std::size_t i = 0; i < count; ++i) {
           (c == 0 ? pixels[i].R : c == 1 ? pixels[i].G : pixels[i].B) = bytes[i];
           pixels[i].A = vpRGBa::alpha_default;
@@ -186,10 +226,24 @@ class SceneFrame : public imaging::Frame {
  private:
   struct Row {
     explicit Row(int count)
-        : x(static_cast<std::size_t>(count)), y(x), grey(x), other(x), depth(x), winner(x.size()) {}
+        : x(static_cast<std::size_t>(count)),
+          y(x),
+          grey(x),
+          other(x),
+          depth(x),
+          winner(x.size()),
+          hit(x.size()) {}
     std::vector<float> x, y, grey, other, depth;
     std::vector<ViewId> winner;
+    std::vector<unsigned char> hit;
   };
+
+  static void add(const float* levels, int count, float* sum) {
+    for (int i = 0; i < count; ++i) sum[i] += levels[i];
+  }
+  static float* row_of(std::vector<float>& sum, const Window& window, int v) {
+    return sum.data() + static_cast<std::ptrdiff_t>(v - window.v) * window.width;
+  }
 
   /// Finds what the exposure sees. Done when the first pixel is asked for.
   void prepare() const {
@@ -218,6 +272,13 @@ class SceneFrame : public imaging::Frame {
       DecalView view(decal, cMw, intrinsics_, params_.blur_px);
       if (!view.box().empty()) decals_.push_back(std::move(view));
     }
+    if (light_now_) light_.emplace(*light_now_, cMw);
+    for (const Person& person : people_) {
+      for (const BodyPart& part : body_parts(person)) {
+        const BodyPartView view(part, wMc_, intrinsics_);
+        if (!view.box().empty()) limbs_.push_back(view);
+      }
+    }
   }
 
   template <typename Finish>
@@ -230,6 +291,7 @@ class SceneFrame : public imaging::Frame {
       const std::vector<Run> runs = runs_of(window, tile_v);
       for (; v < std::min(window.bottom(), tile_v + kTile); ++v) {
         paint_surfaces(window.u, v, window.width, runs, row);
+        paint_people(window.u, v, window.width, row);
         finish_row(v, row);
       }
     }
@@ -269,6 +331,9 @@ class SceneFrame : public imaging::Frame {
         std::fill_n(row.winner.data() + first, length, run.views.front());
         shade(views_[run.views.front()], scene_.tile.data(), row.x.data() + first,
               row.y.data() + first, length, row.grey.data() + first);
+        if (light_ || !limbs_.empty())
+          evaluate(views_[run.views.front()].inverse_depth, row.x.data() + first,
+                   row.y.data() + first, length, row.depth.data() + first);
       } else {
         paint_mixed(run, first, length, row);
       }
@@ -297,6 +362,22 @@ class SceneFrame : public imaging::Frame {
     }
   }
 
+  /// Limbs that stand before what is painted already, and hide what hangs on it.
+  void paint_people(int u, int v, int count, Row& row) const {
+    for (const BodyPartView& limb : limbs_) {
+      const Window& box = limb.box();
+      const int from = std::max(u, box.u);
+      const int n = std::min(u + count, box.right()) - from;
+      if (v < box.v || v >= box.bottom() || n <= 0) continue;
+      const auto at = static_cast<std::size_t>(from - u);
+      std::fill_n(row.hit.data() + at, n, static_cast<unsigned char>(0));
+      limb.paint(row.x.data() + at, row.y.data() + at, n, row.depth.data() + at,
+                 row.grey.data() + at, row.hit.data() + at);
+      for (std::size_t i = at; i < at + static_cast<std::size_t>(n); ++i)
+        if (row.hit[i] != 0) row.winner[i] = kPerson;
+    }
+  }
+
   void paint_decals(int u, int v, int count, Row& row, float* grey) const {
     for (DecalView& decal : decals_) {
       const Window& box = decal.box();
@@ -321,14 +402,16 @@ class SceneFrame : public imaging::Frame {
     }
   }
 
-  void finish(float* grey, int u, int v, int channel, int count, unsigned char* out) const {
+  void shine(const Row& row, float* grey, int count) const {
     if (scene_.light != 1.0F)
       for (int i = 0; i < count; ++i) grey[i] *= scene_.light;
-    noise_.add_and_round(grey, static_cast<float>(params_.noise_sigma), u, v, channel, count, out);
+    if (light_) light_->apply(row.x.data(), row.y.data(), row.depth.data(), count, grey);
   }
 
   const Scene::Impl& scene_;
   Eigen::Isometry3d wMc_;
+  std::vector<Person> people_;
+  std::optional<LightNow> light_now_;
   Intrinsics intrinsics_;
   ImagingParams params_;
   PixelNoise noise_;
@@ -336,6 +419,8 @@ class SceneFrame : public imaging::Frame {
   mutable std::vector<SurfaceView> views_;
   mutable std::vector<int> view_of_surface_;
   mutable std::vector<DecalView> decals_;
+  mutable std::vector<BodyPartView> limbs_;
+  mutable std::optional<LightRows> light_;
 };
 
 Scene::Scene(const WorldMap& world, const std::shared_ptr<const Appearance>& appearance,
@@ -350,7 +435,21 @@ Scene& Scene::operator=(Scene&&) noexcept = default;
 std::unique_ptr<imaging::Frame> Scene::expose(const Eigen::Isometry3d& wMc,
                                               const Intrinsics& intrinsics, Stamp stamp,
                                               const ImagingParams& params) const {
-  return std::make_unique<SceneFrame>(*impl_, wMc, intrinsics, stamp, params);
+  return expose(Exposure{{{wMc, {}}}, std::nullopt}, intrinsics, stamp, params);
+}
+
+std::unique_ptr<imaging::Frame> Scene::expose(const Exposure& exposure,
+                                              const Intrinsics& intrinsics, Stamp stamp,
+                                              const ImagingParams& params) const {
+  if (exposure.instants.size() == 1)
+    return std::make_unique<SceneFrame>(*impl_, exposure.instants.front(), exposure.light,
+                                        intrinsics, stamp, params);
+  std::vector<std::unique_ptr<Radiance>> instants;
+  for (const Exposure::Instant& instant : exposure.instants)
+    instants.push_back(
+        std::make_unique<SceneFrame>(*impl_, instant, exposure.light, intrinsics, stamp, params));
+  return std::make_unique<BlurredFrame>(std::move(instants), intrinsics.width, intrinsics.height,
+                                        PixelNoise(impl_->seed, stamp), params);
 }
 
 }  // namespace vigia::sim

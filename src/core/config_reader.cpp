@@ -224,6 +224,11 @@ bool MapReader::has(const std::string& key) const {
   return ask(key) != nullptr;
 }
 
+bool MapReader::holds_map(const std::string& key) const {
+  const ConfigNode* value = ask(key);
+  return value != nullptr && value->kind == ConfigNode::Kind::map;
+}
+
 const SourceLocation& MapReader::where() const {
   return location(*node_);
 }

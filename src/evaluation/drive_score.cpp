@@ -86,9 +86,10 @@ void DriveScorer::Impl::score_localizer(const mission::Tick& tick, std::size_t i
   if (update) ++count_of(sum.score, update->status);
   const auto* disc = std::get_if<EllipseObservation>(tick.observation);
   if (fused && update->landmark && disc != nullptr) {
-    const auto& angle = tick.truth.look_angle_error;
-    sum.bound.update(tick.truth.pose, *setup->world.landmarks.find(*update->landmark), disc->sensor,
-                     {angle.pan, angle.tilt, tick.truth.look_log_focal_error},
+    const sim::RobotTruth& truth = tick.truth_at_exposure;
+    const auto& angle = truth.look_angle_error;
+    sum.bound.update(truth.pose, *setup->world.landmarks.find(*update->landmark), disc->sensor,
+                     {angle.pan, angle.tilt, truth.look_log_focal_error},
                      localization::measured_disc_covariance(*disc));
   }
   const Eigen::Vector3d error = difference(belief.pose, tick.truth.pose);

@@ -45,7 +45,7 @@ HeadRates LookAround::step(const HeadReading& head) const {
   return rates;
 }
 
-bool LookAround::ready(Stamp now, const HeadReading& head) {
+bool LookAround::ready(Stamp now, const HeadReading& head, Stamp exposed) {
   const HeadAngles& aim = stops_[stop_];
   const bool there = std::abs(aim.pan - head.angles.pan) < kAtStop &&
                      std::abs(aim.tilt - head.angles.tilt) < kAtStop &&
@@ -56,7 +56,7 @@ bool LookAround::ready(Stamp now, const HeadReading& head) {
     return false;
   }
   if (!settled_since_) settled_since_ = now;
-  return now - *settled_since_ >= Duration::from_seconds(setup_.recovery.settle_s);
+  return exposed - *settled_since_ >= Duration::from_seconds(setup_.recovery.settle_s);
 }
 
 bool LookAround::next() {

@@ -19,8 +19,9 @@ class LookAround {
 
   /// Rates for the head, towards the present stop.
   HeadRates step(const HeadReading& head) const;
-  /// Whether the head has stood at the present stop long enough for a picture.
-  bool ready(Stamp now, const HeadReading& head);
+  /// Whether the head had stood at the present stop long enough when the picture at hand was
+  /// exposed. To be asked in every tick.
+  bool ready(Stamp now, const HeadReading& head, Stamp exposed);
   /// A picture was taken: on to the next stop. False when that was the last.
   bool next();
   /// How many sweeps were begun since the robot last knew where it was.

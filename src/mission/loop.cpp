@@ -25,9 +25,18 @@ std::unique_ptr<localization::Localizer> make_localizer(const std::string& name,
                                                       setup.ekf, setup.world.plan);
 }
 
+/// How far from the principal point the feature lies, px.
+double off_centre(const Observation& observation) {
+  const Intrinsics& camera = sensor_of(observation).intrinsics;
+  return (image_extent(observation).centre - Eigen::Vector2d(camera.u0, camera.v0)).norm();
+}
+
 localization::RelocalizerParams relocalizer_params(const MissionSetup& setup) {
   localization::RelocalizerParams params;
   params.sensor = setup.ekf.sensor;
+  params.centre_floor_px = std::max(params.centre_floor_px, setup.ekf.centre_floor_px);
+  params.size_floor = std::max(params.size_floor, setup.ekf.size_floor);
+  params.explained_share = setup.recovery.explained_share;
   return params;
 }
 
@@ -37,7 +46,8 @@ Loop::Loop(const MissionSetup& setup, std::uint64_t seed, const std::vector<List
     : setup_(setup),
       seed_(seed),
       listeners_(listeners),
-      simulator_(setup.robot, setup.world, setup.appearance, draw_start(setup, seed), seed),
+      simulator_(setup.robot, setup.world, setup.appearance, draw_start(setup, seed), seed,
+                 setup.disturbances),
       information_(setup.robot.robot.head, setup.robot.zoom,
                    {setup.ekf.sensor, setup.look.radius_px}),
       relocalizer_(setup.world.landmarks, setup.world.plan, setup.robot.robot.head,
@@ -50,6 +60,8 @@ Loop::Loop(const MissionSetup& setup, std::uint64_t seed, const std::vector<List
              setup.pilot),
       look_around_(setup),
       waypoints_(setup.waypoints),
+      late_frames_(simulator_.latency()),
+      motion_(Duration::from_seconds(simulator_.latency().seconds() + setup.tick_s)),
       dt_(Duration::from_seconds(setup.tick_s)) {
   for (const auto& name : setup.localizers) {
     if (name == setup.primary) primary_ = localizers_.size();
@@ -64,8 +76,11 @@ Outcome Loop::run() {
   tell("plan", {{"length_m", setup_.path.length()}}, {{"policy", setup_.look.policy}});
   std::optional<Outcome> end;
   while (!(end = outcome())) tick();
-  tell(std::string(to_string(*end)),
-       {{"x_m", simulator_.robot().truth().pose.x}, {"y_m", simulator_.robot().truth().pose.y}});
+  Texts texts;
+  if (*end == Outcome::collided)
+    texts.emplace_back("with", simulator_.clearance_of_people() < 0.0 ? "person" : "building");
+  const Pose2& pose = simulator_.robot().truth().pose;
+  tell(std::string(to_string(*end)), {{"x_m", pose.x}, {"y_m", pose.y}}, texts);
   for (Listener* listener : listeners_) listener->on_finish(*end, now_);
   return *end;
 }
@@ -85,21 +100,29 @@ std::optional<Outcome> Loop::outcome() const {
 void Loop::tick() {
   const Stopwatch step;
   timing_ = {};
+  if (simulator_.kidnap()) {
+    const Pose2& pose = simulator_.robot().truth().pose;
+    tell("kidnapped", {{"x_m", pose.x}, {"y_m", pose.y}, {"theta_rad", pose.theta}});
+  }
   const Pose2 before = simulator_.robot().truth().pose;
-  simulator_.robot().advance(dt_);
+  simulator_.advance(dt_);
   now_ = now_ + dt_;
   predict();
 
-  const auto exposure = simulator_.expose();
-  const TimedFrame frame(*exposure);
+  late_frames_.expose({simulator_.expose(), sensor_, simulator_.robot().truth()});
+  delivered_ = late_frames_.take(now_);
+  const ExposedFrame& shown = delivered_ ? *delivered_ : *late_frames_.newest();
+  const TimedFrame frame(*shown.frame);
   sighting_.reset();
   observation_.reset();
   for (auto& localizer_tick : localizer_ticks_) localizer_tick.update.reset();
   if (setup_.full_frames) imaging::grey_image(frame);
+  // A frame of an earlier look says nothing of this one.
+  const bool usable = delivered_ && delivered_->sensor.look == look_;
   if (recovering_) {
-    recover(frame);
+    recover(usable ? &frame : nullptr);
   } else {
-    watch(frame);
+    if (usable) watch(frame);
     if (observation_) localize(*observation_);
     plan();
     steer();
@@ -113,11 +136,10 @@ void Loop::tick() {
 
   std::optional<double> centring;
   if (observation_ && acquired_)
-    centring = (image_extent(*observation_).centre -
-                Eigen::Vector2d(sensor_.intrinsics.u0, sensor_.intrinsics.v0))
-                   .norm();
+    centring = off_centre(*observation_);
   const Tick told{now_,
                   simulator_.robot().truth(),
+                  shown.truth,
                   before,
                   odometry_,
                   head_,
@@ -133,7 +155,7 @@ void Loop::tick() {
                   localizer_ticks_,
                   primary_,
                   pilot_.station(),
-                  *exposure,
+                  *shown.frame,
                   sighting_ ? sighting_->predicted : std::nullopt,
                   timing_};
   for (Listener* listener : listeners_) listener->on_tick(told);
@@ -144,6 +166,7 @@ void Loop::predict() {
   head_ = simulator_.robot().read_head();
   sensor_ = {now_, setup_.robot.zoom.at(head_.zoom_mm), head_.angles, head_.zoom_mm, look_};
   travelled_m_ += std::abs(odometry_.trans);
+  motion_.moved(odometry_);
   const Stopwatch watch;
   for (const auto& localizer : localizers_) localizer->predict(odometry_);
   timing_.localize += watch.elapsed_ms();
@@ -154,7 +177,9 @@ void Loop::watch(const imaging::Frame& frame) {
   if (request_ == servo::TrackRequest::none || !order) return;
   const Landmark* landmark = setup_.world.landmarks.find(order->landmark);
   const Stopwatch watch;
-  sighting_ = watcher_.watch(frame, request_, sensor_, belief(), *landmark);
+  const SensorSnapshot& sensor = delivered_->sensor;
+  sighting_ =
+      watcher_.watch(frame, request_, sensor, motion_.belief_at(sensor.stamp, belief()), *landmark);
   timing_.track += watch.elapsed_ms();
   observation_ = sighting_->observation;
 }
@@ -262,21 +287,32 @@ void Loop::steer() {
   const auto order = gaze_.current();
   servo::GazeInput input{
       now_, head_, expected, belief(), setup_.world.landmarks, sensor_.intrinsics, std::nullopt};
-  if (observation_ && order) input.sighting = gaze_sighting(*observation_, order->landmark);
+  input.sighting = sighting_now();
   const servo::GazeOutput output = gaze_.step(input);
   timing_.servo += watch.elapsed_ms();
   if (order) {
     const Landmark* landmark = setup_.world.landmarks.find(order->landmark);
-    watcher_.settle(sensor_, belief(), *landmark);
+    if (delivered_)
+      watcher_.settle(delivered_->sensor, motion_.belief_at(delivered_->sensor.stamp, belief()),
+                      *landmark);
     if (output.event != servo::GazeEvent::none) tell_gaze(output.event, order->landmark);
   }
   request_ = output.request;
   simulator_.robot().command(command_, output.command);
 }
 
-servo::GazeSighting Loop::gaze_sighting(const Observation& observation, LandmarkId landmark) const {
-  const ImageExtent extent = image_extent(observation, setup_.world.landmarks.find(landmark));
-  return {extent.centre, extent.radius_px};
+/// The feature where the belief's motion since its exposure has carried it.
+std::optional<servo::GazeSighting> Loop::sighting_now() const {
+  if (!observation_) return std::nullopt;
+  const SensorSnapshot& then = sensor_of(*observation_);
+  const Landmark* landmark = setup_.world.landmarks.find(gaze_.current()->landmark);
+  const ImageExtent extent = image_extent(*observation_, landmark);
+  const servo::GazeSighting sighting{extent.centre, extent.radius_px};
+  if (then.stamp == now_) return sighting;
+  const auto moved =
+      watcher_.motion(then, motion_.belief_at(then.stamp, belief()), sensor_, belief(), *landmark);
+  if (!moved) return sighting;
+  return servo::GazeSighting{sighting.uv + moved->shift, sighting.radius_px * moved->growth};
 }
 
 void Loop::note_failure(LandmarkId landmark) {

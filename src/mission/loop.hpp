@@ -1,6 +1,7 @@
 #pragma once
 
 #include "blockages.hpp"
+#include "late_frames.hpp"
 #include "look_around.hpp"
 #include "look_scheduler.hpp"
 #include "timed_frame.hpp"
@@ -35,7 +36,8 @@ class Loop {
   void localize(const Observation& observation);
   void plan();
   void steer();
-  void recover(const imaging::Frame& frame);
+  void recover(const imaging::Frame* frame);
+  std::optional<servo::GazeSighting> sighting_now() const;
   void begin_recovery();
   void relocalize();
   BaseRates drive();
@@ -49,7 +51,6 @@ class Loop {
   void tell_limits(planner::LookDemand demand, bool stop);
   void tell_gaze(servo::GazeEvent event, LandmarkId landmark);
   std::optional<Outcome> outcome() const;
-  servo::GazeSighting gaze_sighting(const Observation& observation, LandmarkId landmark) const;
 
   using Texts = std::vector<std::pair<std::string, std::string>>;
   using Numbers = std::vector<std::pair<std::string, double>>;
@@ -74,6 +75,10 @@ class Loop {
   Blockages blockages_;
   LookAround look_around_;
   std::vector<Eigen::Vector2d> waypoints_;  ///< of the path that the pilot follows
+
+  LateFrames late_frames_;
+  RecentMotion motion_;
+  std::unique_ptr<ExposedFrame> delivered_;  ///< the frame that arrived in this tick
 
   Stamp now_;
   Duration dt_;

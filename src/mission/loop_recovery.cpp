@@ -17,12 +17,15 @@ void Loop::begin_recovery() {
   look_around_.begin(head_);
 }
 
-void Loop::recover(const imaging::Frame& frame) {
+void Loop::recover(const imaging::Frame* frame) {
   command_ = {};
-  if (look_around_.ready(now_, head_)) {
+  // The frame must have been exposed at this stop, standing still.
+  const Stamp exposed = frame != nullptr ? delivered_->sensor.stamp : Stamp{};
+  if (look_around_.ready(now_, head_, exposed)) {
     const Stopwatch watch;
-    for (auto& seen : watcher_.survey(frame, sensor_)) sweep_.sightings.push_back(seen);
-    sweep_.views.push_back(sensor_);
+    const SensorSnapshot& sensor = delivered_->sensor;
+    for (auto& seen : watcher_.survey(*frame, sensor)) sweep_.sightings.push_back(seen);
+    sweep_.views.push_back(sensor);
     timing_.track += watch.elapsed_ms();
     if (!look_around_.next()) {
       relocalize();

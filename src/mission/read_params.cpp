@@ -160,6 +160,7 @@ void read_recovery(MapReader reader, RecoveryParams& params) {
   params.step_fraction = reader.number("step_fraction", {0.1, 1.0}, params.step_fraction);
   params.tilt = from_deg(reader.number("tilt_deg", {-89.0, 89.0}, to_deg(params.tilt)));
   params.settle_s = reader.number("settle_s", {0.0, 5.0}, params.settle_s);
+  params.explained_share = reader.number("explained_share", {0.0, 1.0}, params.explained_share);
   params.sweeps = static_cast<int>(reader.integer("sweeps", {1, 100}, params.sweeps));
   reader.finish();
 }

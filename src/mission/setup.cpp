@@ -108,6 +108,8 @@ MissionSetup load_mission(const std::filesystem::path& file,
   setup.robot = sim::read_robot_setup(robot);
   robot.finish();
 
+  setup.disturbances = sim::read_disturbances(mission.map("disturbances"));
+
   setup.seed = static_cast<std::uint64_t>(mission.integer("seed", {0, 9e15}, 1));
   const double rate = mission.number("rate_hz", {5.0, 200.0}, 25.0);
   setup.tick_s = 1.0 / rate;

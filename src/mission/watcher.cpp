@@ -63,6 +63,15 @@ void Watcher::settle(const SensorSnapshot& sensor, const Belief& belief, const L
   settled_ = image ? std::optional(Eigen::Vector2d(image->u, image->v)) : std::nullopt;
 }
 
+std::optional<ImageMotion> Watcher::motion(const SensorSnapshot& from, const Belief& belief_from,
+                                           const SensorSnapshot& to, const Belief& belief_to,
+                                           const Landmark& landmark) const {
+  const auto first = expected_image(from, belief_from, landmark, head_);
+  const auto second = expected_image(to, belief_to, landmark, head_);
+  if (!first || !second) return std::nullopt;
+  return ImageMotion{{second->u - first->u, second->v - first->v}, second->a / first->a};
+}
+
 std::vector<EllipseObservation> Watcher::survey(const imaging::Frame& frame,
                                                 const SensorSnapshot& sensor) {
   canvas_.attach(frame);

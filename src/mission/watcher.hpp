@@ -20,6 +20,12 @@ struct Sighting {
   std::optional<Ellipse> predicted;        ///< outline
 };
 
+/// How a landmark's image moves between two instants, as the belief has it.
+struct ImageMotion {
+  Eigen::Vector2d shift = Eigen::Vector2d::Zero();  ///< px
+  double growth = 1.0;                              ///< of the semi-major axis
+};
+
 /// Turns the gaze's request into a call of the tracker: predicts the landmark's image from the
 /// belief and carries the expected motion from frame to frame.
 class Watcher {
@@ -33,6 +39,11 @@ class Watcher {
   /// Remembers where the belief, after this tick's update, puts the landmark: the next frame's
   /// expected motion counts from there.
   void settle(const SensorSnapshot& sensor, const Belief& belief, const Landmark& landmark);
+
+  /// What became of the landmark's image from one instant to another; nothing when it has none.
+  std::optional<ImageMotion> motion(const SensorSnapshot& from, const Belief& belief_from,
+                                    const SensorSnapshot& to, const Belief& belief_to,
+                                    const Landmark& landmark) const;
 
   /// Every disc of a whole frame, as observations of unknown identity.
   std::vector<EllipseObservation> survey(const imaging::Frame& frame, const SensorSnapshot& sensor);

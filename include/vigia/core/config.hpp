@@ -68,6 +68,8 @@ class MapReader {
 
   /// Whether the key was given; counts as asking for it.
   bool has(const std::string& key) const;
+  /// Whether the key's value is a map; counts as asking for it.
+  bool holds_map(const std::string& key) const;
   const SourceLocation& where() const;
   SourceLocation where(const std::string& key) const;
 

@@ -39,6 +39,8 @@ struct TickTiming {
 struct Tick {
   Stamp now;
   const sim::RobotTruth& truth;
+  /// The same when `frame` was exposed, and with it what was observed in it: late frames are older.
+  const sim::RobotTruth& truth_at_exposure;
   const Pose2& true_pose_before;
   const OdometryIncrement& odometry;
   const HeadReading& head;

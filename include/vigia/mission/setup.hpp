@@ -39,10 +39,11 @@ struct LookParams {
 
 /// How the robot looks around once it is lost.
 struct RecoveryParams {
-  double step_fraction = 0.7;   ///< of the horizontal field of view between two stops of the sweep
-  double tilt = from_deg(6.0);  ///< of the head during the sweep, rad
-  double settle_s = 0.12;       ///< standing still before a picture counts
-  int sweeps = 3;               ///< given up (outcome stuck) after so many without a result
+  double step_fraction = 0.7;    ///< of the horizontal field of view between two stops of the sweep
+  double tilt = from_deg(6.0);   ///< of the head during the sweep, rad
+  double settle_s = 0.12;        ///< standing still before a picture counts
+  double explained_share = 0.5;  ///< of the discs that a sweep shows, by the pose that is believed
+  int sweeps = 3;                ///< given up (outcome stuck) after so many without a result
 };
 
 /// A mission, validated.
@@ -52,6 +53,7 @@ struct MissionSetup {
   WorldMap world;
   std::shared_ptr<const sim::Appearance> appearance;
   sim::RobotSetup robot;
+  sim::DisturbanceParams disturbances;  ///< of the world, which nobody but the simulator knows
 
   Pose2 start;                 ///< true start
   Prior prior;                 ///< what the localizers are told of it

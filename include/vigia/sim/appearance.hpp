@@ -7,8 +7,9 @@
 
 namespace vigia::sim {
 
-/// Things on the walls and on the floor that a detector of discs must reject.
-enum class ClutterKind { blob, ellipse, ring, square, half_disc };
+/// Things on the walls and on the floor that a detector of discs must reject. A file cannot name
+/// the disc: only the plate round it makes it no landmark.
+enum class ClutterKind { blob, ellipse, ring, square, half_disc, disc };
 
 /// One dark mark on a face. size_m is half its greatest width.
 struct Clutter {

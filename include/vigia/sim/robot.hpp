@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include <visp3/robot/vpRobotSimulator.h>
 
 #include "vigia/core/actuation.hpp"
@@ -8,6 +10,7 @@
 #include "vigia/core/pose.hpp"
 #include "vigia/core/random.hpp"
 #include "vigia/core/sensor_noise.hpp"
+#include "vigia/sim/wheel_slip.hpp"
 
 namespace vigia::sim {
 
@@ -49,6 +52,19 @@ class Robot : public vpRobotSimulator {
   /// Range of the zoom motor, mm. Unlimited until it is set.
   void set_zoom_range(double min_mm, double max_mm);
 
+  /// @name Disturbances
+  /// None of them until they are set.
+  /// @{
+  void set_wheel_slip(const WheelSlip& slip) { slip_ = slip; }
+  /// Play of the pan and tilt encoders, rad: a reading moves once its axis has turned so far on.
+  void set_backlash(double width) { backlash_ = width; }
+  /// rMr': how the head truly sits on the base. The jacobians, like everything the robot knows of
+  /// itself, are those of a head mounted right.
+  void set_mounting_error(const Eigen::Isometry3d& rMr) { mounting_ = rMr; }
+  /// Puts the base elsewhere, standing still; neither odometry nor the head notices.
+  void kidnap(const Pose2& pose);
+  /// @}
+
   /// Asks for rates; they hold until the next call.
   void command(const BaseRates& base, const HeadRates& head);
   /// Moves by @p dt.
@@ -57,14 +73,18 @@ class Robot : public vpRobotSimulator {
   void begin_look();
 
   const RobotTruth& truth() const { return truth_; }
-  /// What the wheels report of the motion since the last call: the true chord with an error of
-  /// covariance control_covariance(). Backward motion has a negative trans.
+  /// What the wheels report of the motion since the last call: the chord (the true one unless the
+  /// wheels slip) with an error of covariance control_covariance(). Backward motion has a negative
+  /// trans.
   OdometryIncrement read_odometry();
-  /// What the encoders say now (a fresh white part each call): true − look error − white.
+  /// What the encoders say now (a fresh white part each call): true − look error − white, dragged
+  /// by the backlash.
   HeadReading read_head();
   const RobotParams& params() const { return params_; }
   /// wMc, where the camera truly is.
   Eigen::Isometry3d camera_pose() const;
+  /// The same @p s seconds from now (or before, negative) if every axis ran on at its present rate.
+  Eigen::Isometry3d camera_pose_after(double s) const;
 
   /// @name ViSP's interface
   /// The end effector is the camera c, the reference frame the world w. Articular velocities are
@@ -92,6 +112,7 @@ class Robot : public vpRobotSimulator {
 
  private:
   void step(double h);
+  Eigen::Isometry3d camera_at(const Pose2& pose, const HeadAngles& head) const;
 
   RobotParams params_;
   RobotTruth truth_;
@@ -101,7 +122,12 @@ class Robot : public vpRobotSimulator {
   double zoom_max_mm_;
   double turned_ = 0.0;  ///< since the last odometry reading, not wrapped
   Stamp odometry_stamp_;
-  Pose2 odometry_pose_;
+  Pose2 odometry_pose_;  ///< at the last odometry reading, as the wheels count
+  Pose2 wheel_pose_;     ///< where the base would be if the wheels were right
+  HeadAngles encoder_;   ///< where the encoders are dragged to
+  double backlash_ = 0.0;
+  std::optional<WheelSlip> slip_;
+  std::optional<Eigen::Isometry3d> mounting_;
   vpColVector displacement_from_;
   RandomStream odometry_random_;
   RandomStream look_random_;

@@ -11,6 +11,7 @@
 #include "vigia/core/stamp.hpp"
 #include "vigia/core/world_map.hpp"
 #include "vigia/imaging/frame.hpp"
+#include "vigia/sim/exposure.hpp"
 
 namespace vigia::sim {
 
@@ -38,6 +39,10 @@ class Scene {
   /// The exposure of a camera at wMc with true intrinsics. The noise of a pixel is a hash of seed,
   /// stamp, u and v. The frame refers to the scene and must not outlive it.
   std::unique_ptr<imaging::Frame> expose(const Eigen::Isometry3d& wMc, const Intrinsics& intrinsics,
+                                         Stamp stamp, const ImagingParams& params) const;
+  /// The same of a camera and people that move while the shutter is open, in uneven light. @p stamp
+  /// is the middle of the exposure, which has at least one instant.
+  std::unique_ptr<imaging::Frame> expose(const Exposure& exposure, const Intrinsics& intrinsics,
                                          Stamp stamp, const ImagingParams& params) const;
 
  private:

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace vigia::sim {
+
+/// Somebody who stands or walks upright on the floor.
+struct Person {
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();
+  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();
+  double heading = 0.0;    ///< where he faces, rad
+  double radius_m = 0.25;  ///< the body lies within it
+  double height_m = 1.75;
+  double walked_m = 0.0;  ///< so far: where in the stride he is
+  bool walking = false;
+  int look = 0;  ///< which clothes
+};
+
+}  // namespace vigia::sim

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include <Eigen/Geometry>
+
+#include "vigia/core/camera.hpp"
+#include "vigia/sim/disturbances.hpp"
+
+namespace vigia::sim {
+
+/// How far the calibration of camera and head is from the truth: drawn once, constant since.
+class CameraErrors {
+ public:
+  CameraErrors() = default;
+  CameraErrors(const DisturbanceParams& disturbances, std::uint64_t seed);
+
+  /// The camera's true intrinsics, where the table says @p calibrated at a zoom position that is
+  /// the fraction @p u of the way from the wide to the long end.
+  Intrinsics true_intrinsics(const Intrinsics& calibrated, double u) const;
+
+  /// rMr': the base frame as the head truly sits on it. The head turns by yaw, pitch and roll about
+  /// the crossing of its axes @p mount_r. Nothing when the head is mounted right.
+  std::optional<Eigen::Isometry3d> mounting(const Eigen::Vector3d& mount_r) const;
+
+ private:
+  Eigen::Vector3d focal_ = Eigen::Vector3d::Zero();  ///< of 1, cos πu, cos 2πu; relative
+  Eigen::Vector2d drift_ = Eigen::Vector2d::Zero();  ///< px from end to end
+  Eigen::Vector2d bow_ = Eigen::Vector2d::Zero();    ///< px of sin 2πu
+  bool askew_ = false;
+  Eigen::Vector3d turn_ = Eigen::Vector3d::Zero();    ///< yaw, pitch, roll
+  Eigen::Vector3d offset_ = Eigen::Vector3d::Zero();  ///< m
+};
+
+}  // namespace vigia::sim

@@ -1,0 +1,123 @@
+#pragma once
+
+#include <optional>
+
+#include "vigia/core/angle.hpp"
+#include "vigia/core/config.hpp"
+
+namespace vigia::sim {
+
+// What the real world does and a simulation forgets. The defaults are what `realistic` means.
+
+/// The frame is the mean over the camera's motion while the shutter is open.
+struct MotionBlurParams {
+  double exposure_s = 0.01;
+  int most_instants = 16;  ///< of which the mean is taken, at most
+};
+
+/// A frame is delivered late.
+struct LatencyParams {
+  double latency_s = 0.08;  ///< from the middle of the exposure
+};
+
+/// The light's gain varies over the room and in time.
+struct LightParams {
+  double room = 0.25;          ///< ± over the room
+  double drift = 0.10;         ///< ± in time, of the whole light
+  double drift_period_s = 60;  ///< of its slowest wave
+  double lamp_step = 0.5;      ///< share of its light that a lamp may lose at a step
+  double step_every_s = 30;    ///< mean time between two steps of some lamp; 0: none
+};
+
+/// The head sits a little askew on the base.
+struct MountingParams {
+  double angle = from_deg(0.25);  ///< σ of yaw, pitch and roll, rad
+  double offset_m = 0.003;        ///< σ of each coordinate
+};
+
+/// The table of focal lengths is a little wrong.
+struct ZoomCalibrationParams {
+  double sigma = 0.005;  ///< relative, rms over the zoom's range and over seeds
+};
+
+/// The optical axis wanders as the lens zooms.
+struct PrincipalPointParams {
+  double drift_px = 2.5;  ///< from one end of the zoom to the other; right in the middle
+};
+
+/// Pan and tilt encoders follow the axes with play.
+struct BacklashParams {
+  double width = from_deg(0.1);  ///< rad
+};
+
+/// The wheels do not report what the base does.
+struct WheelSlipParams {
+  double per_m = 0.15;   ///< slips that begin per metre driven
+  double least_m = 0.1;  ///< length of a slip
+  double most_m = 0.4;
+  double least_loss = 0.02;  ///< share of the way that is lost during a slip
+  double most_loss = 0.10;
+  double skew_per_m = from_deg(3.0);  ///< σ of the turn during a slip, rad per metre
+  double diameter = 0.005;            ///< σ of the relative error of the wheels' diameter
+  double base = 0.005;                ///< σ of the relative error of the wheel base
+};
+
+/// Landmarks hang a little off the place that the map has.
+struct MapErrorParams {
+  double sigma_m = 0.005;       ///< of both coordinates in the landmark's plane
+  double turn = from_deg(1.0);  ///< σ of its turn about the vertical, rad
+};
+
+/// Landmarks of the map that the room lacks.
+struct MissingLandmarksParams {
+  double probability = 0.1;  ///< of each
+  int at_most_one_in = 6;    ///< landmarks; a map of fewer lacks none
+};
+
+/// People who walk about.
+struct PeopleParams {
+  int count = 3;
+  double radius_m = 0.25;
+  double height_m = 1.75;
+  double speed_mps = 0.8;          ///< at most; each has a pace of his own above half of it
+  double pause_probability = 0.4;  ///< at the end of each leg
+  double longest_pause_s = 4.0;
+  double distance_m = 0.4;  ///< kept from the robot's hull by turning, stopping or stepping aside
+};
+
+/// Things on the walls that resemble landmarks.
+struct ClutterParams {
+  int marks = 12;  ///< dark and round
+  int plates = 6;  ///< light, with a dark mark on them
+};
+
+/// At some time of the drive the robot is put elsewhere; odometry does not notice.
+struct KidnappingParams {
+  double earliest_s = 15.0;
+  double latest_s = 60.0;
+  double least_m = 1.5;  ///< from where it was
+};
+
+/// Which disturbances are on. Everything is off by default.
+struct DisturbanceParams {
+  std::optional<MotionBlurParams> motion_blur;
+  std::optional<LatencyParams> latency;
+  std::optional<LightParams> light;
+  std::optional<MountingParams> mounting;
+  std::optional<ZoomCalibrationParams> zoom_calibration;
+  std::optional<PrincipalPointParams> principal_point;
+  std::optional<BacklashParams> backlash;
+  std::optional<WheelSlipParams> wheel_slip;
+  std::optional<MapErrorParams> map_error;
+  std::optional<MissingLandmarksParams> missing_landmarks;
+  std::optional<PeopleParams> people;
+  std::optional<ClutterParams> clutter;
+  std::optional<KidnappingParams> kidnapping;
+};
+
+/// Reads the map `disturbances` of a mission file. Each key is `off`, `realistic` or a map of its
+/// parameters, of which those that are left out are realistic; `all` is what absent keys are, but
+/// for kidnapping. Throws InputError.
+DisturbanceParams read_disturbances(MapReader reader);
+
+}  // namespace vigia::sim

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "vigia/core/camera.hpp"
+#include "vigia/imaging/frame.hpp"
+#include "vigia/sim/body.hpp"
+
+namespace vigia::sim {
+
+/// A limb: in its own coordinates q = A (p − c) the unit sphere, or the cone frustum
+/// qx² + qy² = (1 + taper·qz)² with qz in [0, 1].
+struct BodyPart {
+  Eigen::Matrix3d A = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d c = Eigen::Vector3d::Zero();
+  bool round = false;
+  double taper = 0.0;
+  float grey = 100.0F;
+  float pattern = 0.0F;  ///< grey levels of the cloth's pattern
+};
+
+/// The limbs of a person: shoes, legs, trunk, arms, neck, head and hair. All of them lie within
+/// radius_m of the person's axis but for the feet in the middle of a long stride.
+std::vector<BodyPart> body_parts(const Person& person);
+
+/// A limb as one exposure sees it.
+class BodyPartView {
+ public:
+  BodyPartView(const BodyPart& part, const Eigen::Isometry3d& wMc, const Intrinsics& intrinsics);
+
+  /// Whole pixels round the image, clipped to the frame; may be empty.
+  const imaging::Window& box() const { return box_; }
+
+  /// Where rays (x, y, 1) meet the limb nearer than inverse depth nearest[i]: takes nearest[i],
+  /// sets hit[i] to 1 and grey[i].
+  void paint(const float* x, const float* y, int count, float* nearest, float* grey,
+             unsigned char* hit) const;
+
+ private:
+  struct Constants {
+    std::array<float, 9> ray;     ///< direction in the limb's coordinates from (x, y, 1)
+    std::array<float, 3> origin;  ///< of the rays in the limb's coordinates
+    std::array<float, 9> normal;  ///< from the limb's gradient to camera axes
+    std::array<float, 3> up;      ///< the world's z in camera axes
+    float taper;
+    float round;  ///< 1 for a sphere, 0 for a frustum
+    float grey;
+    float pattern;
+  };
+  static void paint_row(const Constants& constants, const float* x, const float* y, int count,
+                        float* nearest, float* grey, unsigned char* hit);
+
+  Constants constants_;
+  imaging::Window box_;
+};
+
+}  // namespace vigia::sim
