@@ -14,7 +14,8 @@
 namespace vigia::localization {
 namespace {
 
-constexpr int kDof = 3;  // of (u, v, s)
+/// σ of ln √(ab) that teaches nothing: a factor of e^1000.
+constexpr double kUnmeasuredSize = 1e3;
 /// A look without an image for so long (s) is not linearised anew any more.
 constexpr double kLookPause = 1.0;
 /// Of a look of more events the older half is not linearised anew any more.
@@ -38,8 +39,9 @@ EkfLocalizer::EkfLocalizer(LandmarkMap map, const HeadGeometry& geometry, const 
       geometry_(geometry),
       params_(params),
       plan_(std::move(plan)),
-      gate_(chi_square_quantile(params.gate_probability, kDof)),
-      nis_limit_(chi_square_quantile(1.0 - params.nis_probability, kDof * params.nis_looks)) {
+      dof_(params.use_size ? 3 : 2),
+      gate_(chi_square_quantile(params.gate_probability, dof_)),
+      nis_limit_(chi_square_quantile(1.0 - params.nis_probability, dof_ * params.nis_looks)) {
   reset(Stamp{}, Prior{});
 }
 
@@ -102,12 +104,12 @@ UpdateResult EkfLocalizer::match(const EllipseObservation& observation, const Ek
   const Association found = associate(model, at, observation, measured_disc(observation),
                                       measurement_covariance(observation));
   if (!found.any_image) return {UpdateStatus::degenerate, std::nullopt, 0.0, 0};
-  if (found.inside_gate.empty()) return {UpdateStatus::gated, std::nullopt, found.best_nis, kDof};
+  if (found.inside_gate.empty()) return {UpdateStatus::gated, std::nullopt, found.best_nis, dof_};
   const Candidate& best = found.inside_gate.front();
   if (found.inside_gate.size() > 1 &&
       found.inside_gate[1].cost - best.cost < 2.0 * std::log(params_.ambiguity_ratio))
-    return {UpdateStatus::ambiguous, std::nullopt, best.nis, kDof};
-  return {UpdateStatus::fused, best.landmark->id, best.nis, kDof};
+    return {UpdateStatus::ambiguous, std::nullopt, best.nis, dof_};
+  return {UpdateStatus::fused, best.landmark->id, best.nis, dof_};
 }
 
 void EkfLocalizer::append(const EkfInput& input, bool extrapolated) {
@@ -190,6 +192,11 @@ Eigen::Matrix3d EkfLocalizer::measurement_covariance(const EllipseObservation& o
   const Eigen::Vector3d floor(params_.centre_floor_px, params_.centre_floor_px, params_.size_floor);
   Eigen::Matrix3d R = measured_disc_covariance(observation);
   R.diagonal() += floor.cwiseAbs2();
+  if (!params_.use_size) {
+    R.row(2).setZero();
+    R.col(2).setZero();
+    R(2, 2) = kUnmeasuredSize * kUnmeasuredSize;
+  }
   return R;
 }
 
