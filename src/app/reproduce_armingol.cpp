@@ -124,12 +124,13 @@ std::string ending(const DriveScore& score, const std::string& localizer) {
                      to_deg(s.heading_final_rad));
 }
 
-void draw_figures(const mission::MissionSetup& setup, const DriveScore& score,
+void draw_figures(const mission::MissionSetup& setup, const DriveScore& score, int seeds,
                   const std::filesystem::path& folder) {
   DrivePicture picture;
   mission::run_mission(setup, score.seed, {&picture});
-  const std::string which = fmt::format(
-      "seed {}, of {} the one whose odometry ends most like the paper's", score.seed, setup.name);
+  const std::string which =
+      fmt::format("{}, seed {}: of {} seeds the one whose odometry ends most like the paper's",
+                  setup.name, score.seed, seeds);
   report::MapDrive odometry = picture.drive(score);
   odometry.title = "As Fig. 8: odometry alone " + ending(score, "odometry");
   odometry.subtitle = which + "; printed: 22 cm and 3.5°";
@@ -162,13 +163,14 @@ evaluation::PaperTable reproduce_armingol(const PaperOptions& options) {
   };
   const Drives drives{run(pan_tilt), run(best)};
   line.finish(options.threads);
-  draw_figures(best, most_like_the_paper(drives.best), options.out);
+  draw_figures(best, most_like_the_paper(drives.best), n, options.out);
   return {"armingol",
           noise_of(best),
           rows_of(drives),
           {"Means over seeds [95 %]; the limit is what the mean would be at the posterior "
            "Cramér–Rao bound along the best method's looks.",
-           "as published: the landmark's direction only (ekf.use_size = false); best: with its "
+           "as published: the filter learns from the landmark's direction only (ekf.use_size = "
+           "false); best: from its "
            "apparent size. Looks: policy " +
                best.look.policy + "."}};
 }

@@ -69,14 +69,14 @@ std::vector<std::string> disturbance_overrides(const std::string& name) {
   return {fmt::format("disturbances={{{}: realistic}}", name)};
 }
 
-/// A mission's mistake is reported where the campaign file brought it in.
-const SourceLocation& origin(const std::string& message, const std::vector<Dimension>& dimensions,
-                             const SourceLocation& fallback) {
+/// The list of the campaign that brought a mission's mistake in; null when the mission has it of
+/// itself.
+const Dimension* origin(const std::string& message, const std::vector<Dimension>& dimensions) {
   for (const auto& dimension : dimensions)
     for (const auto& choice : dimension.choices)
       for (const auto& assignment : choice.overrides)
-        if (message.find(assignment) != std::string::npos) return dimension.where;
-  return fallback;
+        if (message.find(assignment) != std::string::npos) return &dimension;
+  return nullptr;
 }
 
 /// The next combination of one choice from each dimension, the last dimension first; false after
@@ -147,9 +147,9 @@ Campaign read_campaign(const std::filesystem::path& file,
     try {
       arm.setup = mission::load_mission(mission, arm.overrides);
     } catch (const InputError& error) {
-      const std::string what = error.what();
-      if (arm.overrides == overrides) throw;
-      throw InputError(origin(what, dimensions, reader.where()), what);
+      const Dimension* source = origin(error.what(), dimensions);
+      if (source == nullptr) throw;
+      throw InputError(source->where, error.what());
     }
     if (arm.name.empty()) arm.name = arm.setup.look.policy;
     campaign.arms.push_back(std::move(arm));

@@ -94,6 +94,10 @@ void forget(const fs::path& folder) {
 
 }  // namespace
 
+Descriptor::~Descriptor() {
+  if (number_ >= 0) ::close(number_);
+}
+
 CampaignJournal::CampaignJournal(const fs::path& folder, const Campaign& campaign, bool restart)
     : folder_(folder), campaign_(campaign) {
   try {
@@ -115,16 +119,11 @@ CampaignJournal::CampaignJournal(const fs::path& folder, const Campaign& campaig
   }
 }
 
-CampaignJournal::~CampaignJournal() {
-  if (journal_fd_ >= 0) ::close(journal_fd_);
-  if (folder_fd_ >= 0) ::close(folder_fd_);
-}
-
 void CampaignJournal::lock() {
   // The kernel drops the lock with the process, however that ends.
-  folder_fd_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (folder_fd_ < 0) fail("open", folder_);
-  if (::flock(folder_fd_, LOCK_EX | LOCK_NB) != 0)
+  lock_ = Descriptor(::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (lock_.get() < 0) fail("open", folder_);
+  if (::flock(lock_.get(), LOCK_EX | LOCK_NB) != 0)
     throw InputError("another process is at work in " + folder_.string());
 }
 
@@ -156,8 +155,8 @@ void CampaignJournal::check_header(const std::string& header) const {
 
 void CampaignJournal::read() {
   const fs::path file = folder_ / kJournal;
-  journal_fd_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-  if (journal_fd_ < 0) fail("open", file);
+  journal_ = Descriptor(::open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
+  if (journal_.get() < 0) fail("open", file);
   const std::string text = read_bytes(file);
   std::size_t begin = 0;
   for (int number = 1; begin < text.size(); ++number) {
@@ -169,7 +168,7 @@ void CampaignJournal::read() {
       if (end + 1 < text.size())
         throw InputError({file.string(), number, 1},
                          "this line is damaged, and it is not the last; mend or delete it");
-      if (::ftruncate(journal_fd_, static_cast<off_t>(begin)) != 0) fail("mend", file);
+      if (::ftruncate(journal_.get(), static_cast<off_t>(begin)) != 0) fail("mend", file);
       return;
     }
     const Json line = Json::parse(*object);
@@ -185,7 +184,7 @@ void CampaignJournal::append(const CampaignTask& task, const DriveScore& score) 
   // One call: lines of an interrupted process are whole or the last.
   std::string_view rest = line;
   while (!rest.empty()) {
-    const ssize_t written = ::write(journal_fd_, rest.data(), rest.size());
+    const ssize_t written = ::write(journal_.get(), rest.data(), rest.size());
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) fail("write", folder_ / kJournal);
     rest.remove_prefix(static_cast<std::size_t>(written));

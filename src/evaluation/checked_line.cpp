@@ -6,7 +6,7 @@ namespace vigia::evaluation {
 namespace {
 
 constexpr std::string_view kMember = ",\"check\":\"";
-constexpr std::size_t kTail = 9 + 16 + 2;  // the member, its digits, and "}
+constexpr std::size_t kTail = kMember.size() + 16 + 2;  // the member, its digits, and "}
 
 }  // namespace
 

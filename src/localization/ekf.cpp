@@ -14,6 +14,7 @@
 namespace vigia::localization {
 namespace {
 
+constexpr int kDof = 3;  // of (u, v, s)
 /// σ of ln √(ab) that teaches nothing: a factor of e^1000.
 constexpr double kUnmeasuredSize = 1e3;
 /// A look without an image for so long (s) is not linearised anew any more.
@@ -23,6 +24,14 @@ constexpr std::size_t kLookEvents = 250;
 
 double fraction_at(const OdometryIncrement& u, Stamp stamp) {
   return (stamp - u.from).seconds() / (u.to - u.from).seconds();
+}
+
+/// What is left of a measurement's covariance when the size is not to teach anything.
+Eigen::Matrix3d without_size(Eigen::Matrix3d R) {
+  R.row(2).setZero();
+  R.col(2).setZero();
+  R(2, 2) = kUnmeasuredSize * kUnmeasuredSize;
+  return R;
 }
 
 bool is_usable(const EllipseObservation& observation) {
@@ -39,9 +48,8 @@ EkfLocalizer::EkfLocalizer(LandmarkMap map, const HeadGeometry& geometry, const 
       geometry_(geometry),
       params_(params),
       plan_(std::move(plan)),
-      dof_(params.use_size ? 3 : 2),
-      gate_(chi_square_quantile(params.gate_probability, dof_)),
-      nis_limit_(chi_square_quantile(1.0 - params.nis_probability, dof_ * params.nis_looks)) {
+      gate_(chi_square_quantile(params.gate_probability, kDof)),
+      nis_limit_(chi_square_quantile(1.0 - params.nis_probability, kDof * params.nis_looks)) {
   reset(Stamp{}, Prior{});
 }
 
@@ -89,9 +97,10 @@ UpdateResult EkfLocalizer::update_disc(const EllipseObservation& observation) {
   const std::vector<Event> later = roll_back(stamp);
   const bool first_of_look = state().look != observation.sensor.look;
   const UpdateResult result = match(observation, with_look(state(), observation.sensor.look));
+  const Eigen::Matrix3d R = measurement_covariance(observation);
   if (result.status == UpdateStatus::fused)
     append(DiscFix{observation.sensor, *map_.find(*result.landmark), measured_disc(observation),
-                   measurement_covariance(observation)});
+                   params_.use_size ? R : without_size(R)});
   else if (!events_.empty() && events_.back().extrapolated)
     events_.pop_back();
   for (const Event& event : later) append(event.input, event.extrapolated);
@@ -104,12 +113,12 @@ UpdateResult EkfLocalizer::match(const EllipseObservation& observation, const Ek
   const Association found = associate(model, at, observation, measured_disc(observation),
                                       measurement_covariance(observation));
   if (!found.any_image) return {UpdateStatus::degenerate, std::nullopt, 0.0, 0};
-  if (found.inside_gate.empty()) return {UpdateStatus::gated, std::nullopt, found.best_nis, dof_};
+  if (found.inside_gate.empty()) return {UpdateStatus::gated, std::nullopt, found.best_nis, kDof};
   const Candidate& best = found.inside_gate.front();
   if (found.inside_gate.size() > 1 &&
       found.inside_gate[1].cost - best.cost < 2.0 * std::log(params_.ambiguity_ratio))
-    return {UpdateStatus::ambiguous, std::nullopt, best.nis, dof_};
-  return {UpdateStatus::fused, best.landmark->id, best.nis, dof_};
+    return {UpdateStatus::ambiguous, std::nullopt, best.nis, kDof};
+  return {UpdateStatus::fused, best.landmark->id, best.nis, kDof};
 }
 
 void EkfLocalizer::append(const EkfInput& input, bool extrapolated) {
@@ -192,11 +201,6 @@ Eigen::Matrix3d EkfLocalizer::measurement_covariance(const EllipseObservation& o
   const Eigen::Vector3d floor(params_.centre_floor_px, params_.centre_floor_px, params_.size_floor);
   Eigen::Matrix3d R = measured_disc_covariance(observation);
   R.diagonal() += floor.cwiseAbs2();
-  if (!params_.use_size) {
-    R.row(2).setZero();
-    R.col(2).setZero();
-    R(2, 2) = kUnmeasuredSize * kUnmeasuredSize;
-  }
   return R;
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "vigia/evaluation/campaign.hpp"
 #include "vigia/evaluation/drive_score.hpp"
@@ -19,6 +20,22 @@ struct CampaignTask {
   }
 };
 
+/// An open file, closed with this.
+class Descriptor {
+ public:
+  explicit Descriptor(int number = -1) : number_(number) {}
+  ~Descriptor();
+  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  Descriptor& operator=(Descriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+  int get() const { return number_; }
+
+ private:
+  int number_;
+};
+
 /// The folder of a campaign in progress. A mission that is finished is one line at the end of
 /// journal.jsonl, with a checksum: killed at any moment, what is lost is the missions that were
 /// under way, and a torn last line is cut off. campaign.json says what the journal belongs to:
@@ -30,9 +47,6 @@ class CampaignJournal {
   /// another process works in it, or when a line other than the last is damaged. @p restart
   /// forgets what an earlier campaign of any kind left in it.
   CampaignJournal(const std::filesystem::path& folder, const Campaign& campaign, bool restart);
-  ~CampaignJournal();
-  CampaignJournal(const CampaignJournal&) = delete;
-  CampaignJournal& operator=(const CampaignJournal&) = delete;
 
   /// The missions that are finished, of this campaign's seeds or of others.
   const std::map<CampaignTask, DriveScore>& finished() const { return finished_; }
@@ -48,8 +62,8 @@ class CampaignJournal {
 
   std::filesystem::path folder_;
   const Campaign& campaign_;
-  int folder_fd_ = -1;
-  int journal_fd_ = -1;
+  Descriptor lock_;
+  Descriptor journal_;
   std::map<CampaignTask, DriveScore> finished_;
 };
 
