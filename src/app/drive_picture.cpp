@@ -33,8 +33,7 @@ void DrivePicture::note_look(const mission::Tick& tick) {
   looks_.back().fused = looks_.back().fused || fused;
 }
 
-void DrivePicture::draw(const evaluation::DriveScore& score,
-                        const std::filesystem::path& png) const {
+report::MapDrive DrivePicture::drive(const evaluation::DriveScore& score) const {
   const auto& primary = score.localizers.at(setup_->primary);
   report::MapDrive drive{setup_->world};
   drive.title =
@@ -50,7 +49,12 @@ void DrivePicture::draw(const evaluation::DriveScore& score,
   drive.odometry = odometry_;
   drive.looks = looks_;
   drive.robot_radius_m = setup_->robot.robot.radius_m;
-  report::draw_map(drive, png);
+  return drive;
+}
+
+void DrivePicture::draw(const evaluation::DriveScore& score,
+                        const std::filesystem::path& png) const {
+  report::draw_map(drive(score), png);
 }
 
 }  // namespace vigia::app

@@ -15,6 +15,8 @@ class DrivePicture : public mission::Listener {
   void on_start(const mission::MissionSetup& setup, std::uint64_t seed) override;
   void on_tick(const mission::Tick& tick) override;
 
+  /// What was collected, with title and figures. Refers to the mission's world.
+  report::MapDrive drive(const evaluation::DriveScore& score) const;
   void draw(const evaluation::DriveScore& score, const std::filesystem::path& png) const;
 
  private:

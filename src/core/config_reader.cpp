@@ -339,6 +339,16 @@ std::vector<Eigen::Vector2d> MapReader::points2(const std::string& key, Range ra
   return points;
 }
 
+std::vector<std::string> MapReader::texts(const std::string& key) {
+  const ConfigNode& value = require(key);
+  if (value.kind != ConfigNode::Kind::list)
+    ValueError(path(key)).fail(value, "must be a list of texts");
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < value.items.size(); ++i)
+    texts.push_back(read_text(*value.items[i], path(key) + "[" + std::to_string(i) + "]"));
+  return texts;
+}
+
 MapReader MapReader::map(const std::string& key) {
   ask(key);
   for (const auto& [name, value] : node_->entries) {

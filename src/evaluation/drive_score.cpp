@@ -1,5 +1,7 @@
 #include "vigia/evaluation/drive_score.hpp"
 
+#include "loss_watch.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -46,6 +48,7 @@ struct DriveScorer::Impl {
   double last_zoom_mm = 0.0;
   double last_pan = 0.0;
   double last_sigma_m = 0.0;
+  double lost_since_s = 0.0;
 
   void score_localizer(const mission::Tick& tick, std::size_t i);
   void score_look(const mission::Tick& tick, LocalizerSums& sum, double nees, double squared);
@@ -102,7 +105,9 @@ void DriveScorer::Impl::score_localizer(const mission::Tick& tick, std::size_t i
   sum.score.position_max_m = std::max(sum.score.position_max_m, std::sqrt(squared));
   sum.score.position_final_m = std::sqrt(squared);
   sum.score.heading_final_rad = std::abs(error.z());
-  if (belief.status == BeliefStatus::lost) sum.score.lost_s += setup->tick_s;
+  const bool says_lost = belief.status == BeliefStatus::lost;
+  if (says_lost) sum.score.lost_s += setup->tick_s;
+  watch_for_loss(sum.score.lost, tick.now.seconds(), says_lost, std::sqrt(squared));
   if (fused) score_look(tick, sum, nees, squared);
 }
 
@@ -144,6 +149,15 @@ void DriveScorer::Impl::score_centring(const mission::Tick& tick) {
 void DriveScorer::on_event(const mission::Event& event) {
   if (event.kind == "look") ++impl_->score.perception.looks;
   if (event.kind == "target_lost") ++impl_->score.perception.target_losses;
+  RecoveryScore& recovery = impl_->score.recovery;
+  if (event.kind == "lost") {
+    ++recovery.lost;
+    impl_->lost_since_s = event.stamp.seconds();
+  }
+  if (event.kind == "recovered") {
+    ++recovery.recovered;
+    recovery.recovering_s += event.stamp.seconds() - impl_->lost_since_s;
+  }
 }
 
 void DriveScorer::on_finish(mission::Outcome outcome, Stamp end) {
@@ -159,6 +173,9 @@ void DriveScorer::on_finish(mission::Outcome outcome, Stamp end) {
     sum.score.heading_rmse_rad = std::sqrt(sum.squared_heading / n);
     sum.score.nees_mean = sum.nees / n;
     sum.score.pcrlb_position_rms_m = std::sqrt(sum.bound_trace / n);
+    const Eigen::Matrix3d bound = sum.bound.covariance();
+    sum.score.pcrlb_position_final_m = mean_length(bound.topLeftCorner<2, 2>());
+    sum.score.pcrlb_heading_final_rad = std::sqrt(2.0 * bound(2, 2) / kPi);
     impl.score.localizers[impl.setup->localizers[i]] = sum.score;
   }
 }

@@ -6,8 +6,10 @@
 #include <stdexcept>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <boost/math/distributions/beta.hpp>
 #include <boost/math/distributions/students_t.hpp>
+#include <boost/math/special_functions/ellint_2.hpp>
 
 #include "vigia/core/random.hpp"
 #include "vigia/localization/chi_square.hpp"
@@ -51,6 +53,15 @@ DriveErrors drive_errors(const std::vector<PoseSample>& samples) {
   errors.position_rmse = std::sqrt(errors.position_rmse);
   errors.heading_rmse = std::sqrt(errors.heading_rmse);
   return errors;
+}
+
+double mean_length(const Eigen::Matrix2d& covariance) {
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
+  axes.computeDirect(covariance, Eigen::EigenvaluesOnly);
+  const double small = std::max(0.0, axes.eigenvalues()(0));
+  const double large = axes.eigenvalues()(1);
+  if (large <= 0.0) return 0.0;
+  return std::sqrt(2.0 * large / kPi) * boost::math::ellint_2(std::sqrt(1.0 - small / large));
 }
 
 Interval anees_band(int runs, int dof, double probability) {

@@ -1,10 +1,8 @@
 #include "vigia/evaluation/seed_runs.hpp"
 
-#include <algorithm>
-#include <atomic>
-#include <exception>
+#include "work_queue.hpp"
+
 #include <mutex>
-#include <thread>
 
 #include "vigia/mission/mission.hpp"
 
@@ -14,30 +12,15 @@ std::vector<DriveScore> run_seeds(const mission::MissionSetup& setup, std::uint6
                                   int count, int threads,
                                   const std::function<void(const DriveScore&)>& done) {
   std::vector<DriveScore> scores(static_cast<std::size_t>(count));
-  std::atomic<int> next{0};
   std::mutex mutex;
-  std::exception_ptr failure;
-  const auto work = [&] {
-    try {
-      for (int i = next++; i < count; i = next++) {
-        DriveScorer scorer;
-        mission::run_mission(setup, first + static_cast<std::uint64_t>(i), {&scorer});
-        scores[static_cast<std::size_t>(i)] = scorer.score();
-        if (!done) continue;
-        const std::lock_guard lock(mutex);
-        done(scorer.score());
-      }
-    } catch (...) {
-      const std::lock_guard lock(mutex);
-      failure = std::current_exception();
-      next = count;
-    }
-  };
-  std::vector<std::thread> pool;
-  for (int i = 1; i < std::min(threads, count); ++i) pool.emplace_back(work);
-  work();
-  for (auto& thread : pool) thread.join();
-  if (failure) std::rethrow_exception(failure);
+  work_off(scores.size(), threads, [&](std::size_t i) {
+    DriveScorer scorer;
+    mission::run_mission(setup, first + i, {&scorer});
+    scores[i] = scorer.score();
+    if (!done) return;
+    const std::lock_guard lock(mutex);
+    done(scores[i]);
+  });
   return scores;
 }
 

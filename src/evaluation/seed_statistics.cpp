@@ -63,6 +63,23 @@ LocalizerStatistics localizer_statistics(const std::vector<DriveScore>& scores,
   return statistics;
 }
 
+LossStatistics loss_statistics(const std::vector<DriveScore>& scores) {
+  LossStatistics losses;
+  double lost_s = 0.0;
+  for (const auto& score : scores)
+    for (const auto& episode : score.localizers.at(score.primary).lost) {
+      ++losses.episodes;
+      if (episode.announced()) ++losses.announced;
+      if (!episode.ended_s) continue;
+      ++losses.ended;
+      lost_s += *episode.ended_s - episode.began_s();
+    }
+  losses.announced_share =
+      losses.episodes > 0 ? clopper_pearson(losses.announced, losses.episodes) : Interval{0.0, 1.0};
+  if (losses.ended > 0) losses.mean_lost_s = lost_s / losses.ended;
+  return losses;
+}
+
 }  // namespace
 
 SeedStatistics summarise(const std::vector<DriveScore>& scores) {
@@ -74,6 +91,8 @@ SeedStatistics summarise(const std::vector<DriveScore>& scores) {
     if (score.outcome == mission::Outcome::collided) ++statistics.collided;
   }
   statistics.arrived_share = clopper_pearson(statistics.arrived, statistics.runs);
+  statistics.collided_share = clopper_pearson(statistics.collided, statistics.runs);
+  statistics.losses = loss_statistics(scores);
   statistics.looks =
       mean_of(scores, [](const DriveScore& s) { return static_cast<double>(s.perception.looks); });
   statistics.centring_rms_px =

@@ -1,24 +1,38 @@
-#include <nlohmann/json.hpp>
-
-#include "vigia/evaluation/drive_score.hpp"
+#include "score_json.hpp"
 
 namespace vigia::evaluation {
 namespace {
 
-using Json = nlohmann::ordered_json;
+Json seconds(const std::optional<double>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json episode_json(const LostEpisode& episode) {
+  return {{"said_s", seconds(episode.said_s)},
+          {"passed_half_metre_s", seconds(episode.passed_s)},
+          {"ended_s", seconds(episode.ended_s)},
+          {"announced", episode.announced()}};
+}
+
+}  // namespace
 
 Json localizer_json(const LocalizerScore& s) {
-  return {{"position_final_m", s.position_final_m},
-          {"position_rmse_m", s.position_rmse_m},
-          {"position_max_m", s.position_max_m},
-          {"heading_final_rad", s.heading_final_rad},
-          {"heading_rmse_rad", s.heading_rmse_rad},
-          {"nees_mean", s.nees_mean},
-          {"pcrlb_position_rms_m", s.pcrlb_position_rms_m},
-          {"updates", s.updates},
-          {"rejected", s.rejected},
-          {"unsupported", s.unsupported},
-          {"lost_s", s.lost_s}};
+  Json json{{"position_final_m", s.position_final_m},
+            {"position_rmse_m", s.position_rmse_m},
+            {"position_max_m", s.position_max_m},
+            {"heading_final_rad", s.heading_final_rad},
+            {"heading_rmse_rad", s.heading_rmse_rad},
+            {"nees_mean", s.nees_mean},
+            {"pcrlb_position_rms_m", s.pcrlb_position_rms_m},
+            {"updates", s.updates},
+            {"rejected", s.rejected},
+            {"unsupported", s.unsupported},
+            {"lost_s", s.lost_s},
+            {"pcrlb_position_final_m", s.pcrlb_position_final_m},
+            {"pcrlb_heading_final_rad", s.pcrlb_heading_final_rad},
+            {"lost", Json::array()}};
+  for (const auto& episode : s.lost) json["lost"].push_back(episode_json(episode));
+  return json;
 }
 
 Json perception_json(const PerceptionScore& s) {
@@ -34,7 +48,9 @@ Json perception_json(const PerceptionScore& s) {
           {"target_losses", s.target_losses}};
 }
 
-}  // namespace
+Json recovery_json(const RecoveryScore& s) {
+  return {{"lost", s.lost}, {"recovered", s.recovered}, {"recovering_s", s.recovering_s}};
+}
 
 std::string summary_json(const DriveScore& score) {
   Json summary;
@@ -47,6 +63,7 @@ std::string summary_json(const DriveScore& score) {
   for (const auto& [name, localizer] : score.localizers)
     summary["localizers"][name] = localizer_json(localizer);
   summary["perception"] = perception_json(score.perception);
+  summary["recovery"] = recovery_json(score.recovery);
   return summary.dump(2) + "\n";
 }
 

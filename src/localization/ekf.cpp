@@ -15,6 +15,8 @@ namespace vigia::localization {
 namespace {
 
 constexpr int kDof = 3;  // of (u, v, s)
+/// σ of ln √(ab) that teaches nothing: a factor of e^1000.
+constexpr double kUnmeasuredSize = 1e3;
 /// A look without an image for so long (s) is not linearised anew any more.
 constexpr double kLookPause = 1.0;
 /// Of a look of more events the older half is not linearised anew any more.
@@ -22,6 +24,14 @@ constexpr std::size_t kLookEvents = 250;
 
 double fraction_at(const OdometryIncrement& u, Stamp stamp) {
   return (stamp - u.from).seconds() / (u.to - u.from).seconds();
+}
+
+/// What is left of a measurement's covariance when the size is not to teach anything.
+Eigen::Matrix3d without_size(Eigen::Matrix3d R) {
+  R.row(2).setZero();
+  R.col(2).setZero();
+  R(2, 2) = kUnmeasuredSize * kUnmeasuredSize;
+  return R;
 }
 
 bool is_usable(const EllipseObservation& observation) {
@@ -87,9 +97,10 @@ UpdateResult EkfLocalizer::update_disc(const EllipseObservation& observation) {
   const std::vector<Event> later = roll_back(stamp);
   const bool first_of_look = state().look != observation.sensor.look;
   const UpdateResult result = match(observation, with_look(state(), observation.sensor.look));
+  const Eigen::Matrix3d R = measurement_covariance(observation);
   if (result.status == UpdateStatus::fused)
     append(DiscFix{observation.sensor, *map_.find(*result.landmark), measured_disc(observation),
-                   measurement_covariance(observation)});
+                   params_.use_size ? R : without_size(R)});
   else if (!events_.empty() && events_.back().extrapolated)
     events_.pop_back();
   for (const Event& event : later) append(event.input, event.extrapolated);

@@ -140,6 +140,16 @@ void draw_landmarks(const Sheet& sheet, const MapView& view, const MapDrive& dri
   }
 }
 
+void draw_rings(const Sheet& sheet, const MapView& view, const MapDrive& drive,
+                const DriveStyle& style) {
+  if (drive.look_ring_m <= 0.0) return;
+  for (const MapLook& look : drive.looks) {
+    if (!look.fused) continue;
+    sheet.circle(view(look.from), drive.look_ring_m * view.scale);
+    sheet.stroke(style.ring);
+  }
+}
+
 void draw_looks(const Sheet& sheet, const MapView& view, const MapDrive& drive,
                 LabelPlacer& labels) {
   constexpr double kRadius = 5.0;
@@ -225,6 +235,7 @@ void draw_drive(const Sheet& sheet, const MapView& view, const MapDrive& drive,
   draw_ellipses(sheet, view, drive, style);
   draw_paths(sheet, view, drive, style);
   draw_arrows(sheet, view, drive.truth);
+  draw_rings(sheet, view, drive, style);
   draw_landmarks(sheet, view, drive, labels);
   draw_ends(sheet, view, drive, labels);
   draw_looks(sheet, view, drive, labels);

@@ -18,6 +18,7 @@ struct DriveStyle {
   Stroke odometry{palette::kVermillion, 2.2, {12.0, 4.0, 2.0, 4.0}};
   Stroke ellipse{palette::kBlue, 1.6};
   double ellipse_fill = 0.16;
+  Stroke ring{palette::kInk, 1.8, {6.0, 4.0}};
   double sight_width = 1.3;
   std::vector<double> unfused_dashes{2.0, 4.0};
 };

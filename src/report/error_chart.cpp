@@ -1,5 +1,6 @@
 #include "error_chart.hpp"
 
+#include "chart_axis.hpp"
 #include "travel.hpp"
 
 #include <algorithm>
@@ -36,15 +37,6 @@ Series series_of(const MapDrive& drive) {
 
 double largest(const std::vector<double>& values) {
   return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
-}
-
-// The smallest of 1, 2, 5 × 10^n that divides the range into at most so many steps.
-double round_step(double range, int steps) {
-  const double rough = range / steps;
-  const double decade = std::pow(10.0, std::floor(std::log10(rough)));
-  for (const double factor : {1.0, 2.0, 5.0})
-    if (factor * decade >= rough) return factor * decade;
-  return 10.0 * decade;
 }
 
 // Odometry may drift so far that the estimate would be a line on the axis: it leaves the chart at

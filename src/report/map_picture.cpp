@@ -73,6 +73,14 @@ LegendEntry look_entry(const DriveStyle& style, bool fused) {
           fused ? "look, numbered, in its landmark's colour" : "look that was not used"};
 }
 
+LegendEntry ring_entry(const DriveStyle& style) {
+  return {[style](const Sheet& sheet, const Box& box) {
+            sheet.circle(middle(box), 11.0);
+            sheet.stroke(style.ring);
+          },
+          "relocalisation"};
+}
+
 LegendEntry landmark_entry() {
   return {[](const Sheet& sheet, const Box& box) {
             sheet.line(middle(box), middle(box) + Eigen::Vector2d(16.0, 0.0), {palette::kInk, 2.0});
@@ -97,6 +105,7 @@ std::vector<LegendEntry> legend_of(const MapDrive& drive, const DriveStyle& styl
   const auto fused = [](const MapLook& look) { return look.fused; };
   if (std::any_of(drive.looks.begin(), drive.looks.end(), fused))
     entries.push_back(look_entry(style, true));
+  if (drive.look_ring_m > 0.0) entries.push_back(ring_entry(style));
   if (!std::all_of(drive.looks.begin(), drive.looks.end(), fused))
     entries.push_back(look_entry(style, false));
   return entries;

@@ -135,6 +135,18 @@ TEST(EkfConsistency, StaysConsistentWithTheDefaultFloors) {
   expect_consistent(run_campaign(noise, params));
 }
 
+TEST(EkfConsistency, StaysConsistentWithoutTheDiscsSize) {
+  const DriveNoise noise;
+  EkfParams pan_tilt = matched(noise);
+  pan_tilt.use_size = false;
+  const Campaign campaign = run_campaign(noise, pan_tilt);
+  EXPECT_GE(campaign.consistency.inside_band, 0.9);
+  EXPECT_GT(campaign.consistency.mean_per_dof, 0.9);
+  EXPECT_LT(campaign.consistency.mean_per_dof, 1.1);
+  EXPECT_LT(campaign.other, 0.003 * campaign.fused);
+  EXPECT_GT(campaign.ratio.interval.low, 1.0);  // the bound knows the size
+}
+
 TEST(EkfConsistency, TakingTheErrorOfALookForWhiteNoiseMakesTheFilterOverConfident) {
   const DriveNoise noise;
   EkfParams naive = matched(noise);

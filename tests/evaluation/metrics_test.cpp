@@ -3,6 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
 #include "vigia/core/random.hpp"
@@ -27,6 +28,27 @@ TEST(Metrics, ErrorsOfADriveAreFinalRmsAndMaximum) {
   EXPECT_NEAR(errors.heading_max, 0.02, 1e-12);
   EXPECT_NEAR(errors.heading_rmse, std::sqrt((1e-4 + 4e-4) / 2.0), 1e-12);
   EXPECT_NEAR(errors.nees_mean, 0.5 * ((9.0 + 4.0 + 1.0) + (0.25 + 4.0)), 1e-9);
+}
+
+TEST(Metrics, MeanLengthOfAGaussianErrorIsRayleighsWhenRoundAndFoldedWhenFlat) {
+  const Eigen::Matrix2d flat = Eigen::Vector2d(4.0, 0.0).asDiagonal();
+  EXPECT_NEAR(mean_length(0.25 * Eigen::Matrix2d::Identity()), 0.5 * std::sqrt(kPi / 2.0), 1e-12);
+  EXPECT_NEAR(mean_length(flat), 2.0 * std::sqrt(2.0 / kPi), 1e-12);
+  EXPECT_EQ(mean_length(Eigen::Matrix2d::Zero()), 0.0);
+}
+
+TEST(Metrics, MeanLengthIsThatOfASample) {
+  constexpr int kDraws = 200000;
+  Eigen::Matrix2d covariance;
+  covariance << 2.0, 0.6, 0.6, 0.5;
+  const Eigen::Matrix2d root = covariance.llt().matrixL();
+  RandomStream random(3, "length");
+  double sum = 0.0;
+  for (int i = 0; i < kDraws; ++i)
+    sum += (root * Eigen::Vector2d(random.normal(), random.normal())).norm();
+  const double mean = mean_length(covariance);
+  const double sigma = std::sqrt((covariance.trace() - mean * mean) / kDraws);
+  EXPECT_NEAR(sum / kDraws, mean, 4.0 * sigma);  // k = 4
 }
 
 TEST(Metrics, ADriveWithoutSamplesIsAnError) {

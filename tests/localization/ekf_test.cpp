@@ -95,6 +95,29 @@ TEST(Ekf, ALookMovesTheEstimateTowardsTheTruth) {
   EXPECT_EQ(ekf.count(UpdateStatus::fused), 2);
 }
 
+TEST(Ekf, WithoutTheSizeADiscOfAnotherSizeTeachesTheSame) {
+  const Landmark landmark = disc(1, 8.0, 4.0, 1.5, 180.0);
+  EkfParams pan_tilt;
+  pan_tilt.use_size = false;
+  EllipseObservation seen = exact(landmark, kPose);
+  EllipseObservation larger = seen;
+  larger.ellipse.a *= 1.004;
+  larger.ellipse.b *= 1.004;
+  Belief beliefs[2];
+  for (const auto* observation : {&seen, &larger}) {
+    EkfLocalizer ekf(LandmarkMap({landmark}), {}, pan_tilt);
+    ekf.reset({}, prior_at({4.02, 2.99, 0.21}));
+    ASSERT_EQ(ekf.update(*observation).status, UpdateStatus::fused);
+    beliefs[observation == &seen ? 0 : 1] = ekf.belief();
+  }
+  // The size's σ is a factor of e^1000: what is left of it is 1e-6 of a step.
+  EXPECT_TRUE(beliefs[0].pose.vector().isApprox(beliefs[1].pose.vector(), 1e-7));
+  // The range along the line of sight is not learnt.
+  const Eigen::Vector2d along = (landmark.centre_w().head<2>() - kPose.position()).normalized();
+  const Eigen::Matrix2d P = beliefs[0].covariance.topLeftCorner<2, 2>();
+  EXPECT_GT(std::sqrt(along.dot(P * along)), 0.9 * 0.03);
+}
+
 TEST(Ekf, ManyFramesOfOneLookTeachLittleMoreThanOne) {
   const Landmark landmark = *test::room_landmarks().find(0);
   EkfLocalizer once = ekf_at(kPose);

@@ -101,6 +101,9 @@ class MapReader {
   /// A list of points, each a list of two numbers, at least @p least of them.
   std::vector<Eigen::Vector2d> points2(const std::string& key, Range range, std::size_t least);
 
+  /// A list of texts.
+  std::vector<std::string> texts(const std::string& key);
+
   /// A map below this one; absent it reads as empty, and is created when something is resolved.
   MapReader map(const std::string& key);
   /// A list of maps; absent it reads as empty.

@@ -18,6 +18,20 @@ struct LookScore {
   double bound_m2 = 0.0;          ///< trace of the bound's position covariance
 };
 
+/// A time during which a localizer was lost: from when it said so or its error passed kLost_m,
+/// whichever came first, until it tracks again with an error of less than half of that.
+struct LostEpisode {
+  /// An error of the position that nobody would call localized, m.
+  static constexpr double kLost_m = 0.5;
+
+  std::optional<double> said_s;    ///< when its belief's status became lost
+  std::optional<double> passed_s;  ///< when its error passed kLost_m
+  std::optional<double> ended_s;
+  double began_s() const;
+  /// Whether it had said so by the time the error passed kLost_m, if it ever did.
+  bool announced() const { return said_s && (!passed_s || *said_s <= *passed_s); }
+};
+
 /// One localizer on one drive. Means are over the ticks of the drive.
 struct LocalizerScore {
   double position_final_m = 0.0;
@@ -27,10 +41,15 @@ struct LocalizerScore {
   double heading_rmse_rad = 0.0;
   double nees_mean = 0.0;
   double pcrlb_position_rms_m = 0.0;  ///< √ of the mean trace of the posterior Cramér–Rao bound
+  /// Mean size of a Gaussian error whose covariance is the bound's at the end of the drive: what
+  /// position_final_m and heading_final_rad would be on average at the bound.
+  double pcrlb_position_final_m = 0.0;
+  double pcrlb_heading_final_rad = 0.0;
   int updates = 0;
   int rejected = 0;  ///< gated, ambiguous, degenerate or too late
   int unsupported = 0;
   double lost_s = 0.0;
+  std::vector<LostEpisode> lost;
   std::vector<LookScore> looks;
 };
 
@@ -47,6 +66,13 @@ struct PerceptionScore {
   int target_losses = 0;
 };
 
+/// How often the mission was lost and found, by its events.
+struct RecoveryScore {
+  int lost = 0;
+  int recovered = 0;
+  double recovering_s = 0.0;  ///< from each `lost` to its `recovered`
+};
+
 struct DriveScore {
   std::string mission;
   std::uint64_t seed = 0;
@@ -55,6 +81,7 @@ struct DriveScore {
   std::string primary;
   std::map<std::string, LocalizerScore> localizers;
   PerceptionScore perception;
+  RecoveryScore recovery;
 };
 
 /// Scores a drive while it runs: errors against the truth, consistency, and the posterior
@@ -82,5 +109,10 @@ class DriveScorer : public mission::Listener {
 
 /// summary.json as contracted.
 std::string summary_json(const DriveScore& score);
+
+/// The whole score on one line of JSON, looks and episodes included, and back: equal to the bit.
+/// score_from_record() throws std::exception for anything else.
+std::string score_record(const DriveScore& score);
+DriveScore score_from_record(const std::string& record);
 
 }  // namespace vigia::evaluation

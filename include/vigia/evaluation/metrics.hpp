@@ -40,6 +40,10 @@ double nees(const PoseSample& sample);
 /// Throws std::invalid_argument when there are no samples.
 DriveErrors drive_errors(const std::vector<PoseSample>& samples);
 
+/// Mean length of a planar Gaussian error with this covariance, σ₁ √(2/π) E(1 − σ₂²/σ₁²), E the
+/// complete elliptic integral of the second kind.
+double mean_length(const Eigen::Matrix2d& covariance);
+
 /// Where the average NEES over @p runs independent runs lies with probability @p probability when
 /// the estimator is consistent, per degree of freedom.
 Interval anees_band(int runs, int dof, double probability = 0.95);

@@ -22,11 +22,22 @@ struct LocalizerStatistics {
   std::vector<double> anees;   ///< per dof, at the end of each look that every seed made
 };
 
+/// What became of a localizer's getting lost (see LostEpisode), over all drives.
+struct LossStatistics {
+  int episodes = 0;
+  int announced = 0;         ///< said before the error passed LostEpisode::kLost_m, if it ever did
+  Interval announced_share;  ///< Clopper–Pearson, 95 %; [0, 1] without episodes
+  int ended = 0;             ///< it found itself again
+  double mean_lost_s = 0.0;  ///< of those that ended
+};
+
 struct SeedStatistics {
   int runs = 0;
   int arrived = 0;
   Interval arrived_share;  ///< Clopper–Pearson, 95 %
   int collided = 0;
+  Interval collided_share;
+  LossStatistics losses;  ///< of the primary localizer
   Estimate looks;
   Estimate centring_rms_px;
   std::map<std::string, LocalizerStatistics> localizers;

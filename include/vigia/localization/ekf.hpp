@@ -25,6 +25,9 @@ struct EkfParams {
   /// centre in px, and relative size.
   double centre_floor_px = 0.002;
   double size_floor = 5e-5;
+  /// Whether the disc's apparent size teaches the filter. Without it only the direction does, as in
+  /// Armingol: pan and tilt. It tells discs apart either way.
+  bool use_size = true;
   /// Gauss–Newton steps of an update, at most: near a landmark one step is not enough.
   int iterations = 4;
   /// A step that moves the look by less (m, rad) is the last: what is left is of second order,

@@ -39,6 +39,8 @@ struct MapDrive {
   std::string estimate_name = "estimate";
   std::vector<Pose2> odometry = {};
   std::vector<MapLook> looks = {};  ///< in order of time
+  /// Radius of a dashed ring round the place of each look that was used; 0: no rings.
+  double look_ring_m = 0.0;
   double robot_radius_m = 0.25;
   /// How many times its size the estimate's 95 % ellipse is drawn; the legend says so. 0 chooses
   /// the largest of 1, 2, 5, 10, 20, 50 that keeps the ellipses small against the room.

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "vigia/mission/setup.hpp"
+
+namespace vigia::evaluation {
+
+/// One way to drive the campaign's mission. Every arm drives it with the same seeds, and each
+/// consumer of randomness has its stream by name: what two arms do alike is alike to the byte.
+struct Arm {
+  std::string name;                    ///< of the parts in which the arms differ, e.g. "fuzzy/all"
+  std::string disturbance;             ///< empty: as the mission has them
+  std::string variant;                 ///< empty: none
+  std::vector<std::string> overrides;  ///< "key.path=value", in the order in which they apply
+  mission::MissionSetup setup;         ///< shared by all missions of the arm
+};
+
+/// Seeds × policies × localizers × disturbances × variants of one mission.
+struct Campaign {
+  std::string name;
+  std::uint64_t first_seed = 1;
+  int seeds = 100;
+  std::vector<Arm> arms;
+  std::size_t baseline = 0;  ///< the arm from which differences count
+
+  std::size_t missions() const { return arms.size() * static_cast<std::size_t>(seeds); }
+};
+
+/// Reads a campaign file: `name`, `mission` (relative to the file), `seeds: {first, count}`, the
+/// lists `policies`, `localizers`, `disturbances` and `variants: [{name, set: [key=value, …]}]`,
+/// each of which multiplies the arms, `set` for all of them, and `baseline`, an arm's name. A
+/// disturbance is the name of a key below the mission's `disturbances`, which it sets to
+/// `realistic` with all others off; `none` has all of them off. @p overrides apply last, to every
+/// arm. Throws InputError with the place in the campaign file.
+Campaign read_campaign(const std::filesystem::path& file,
+                       const std::vector<std::string>& overrides = {});
+
+}  // namespace vigia::evaluation

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "vigia/evaluation/drive_score.hpp"
+
+namespace vigia::evaluation {
+
+using Json = nlohmann::ordered_json;
+
+/// The parts of summary.json.
+Json localizer_json(const LocalizerScore& score);
+Json perception_json(const PerceptionScore& score);
+Json recovery_json(const RecoveryScore& score);
+
+/// What a score's record holds.
+DriveScore score_from_json(const Json& record);
+
+}  // namespace vigia::evaluation

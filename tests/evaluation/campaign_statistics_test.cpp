@@ -1,0 +1,126 @@
+#include "vigia/evaluation/campaign_statistics.hpp"
+
+#include "loss_watch.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "vigia/evaluation/campaign_report.hpp"
+
+namespace vigia::evaluation {
+namespace {
+
+using ::testing::HasSubstr;
+
+DriveScore drive(std::uint64_t seed, double rms, int looks) {
+  DriveScore score;
+  score.seed = seed;
+  score.outcome = mission::Outcome::arrived;
+  score.primary = "ekf";
+  score.perception.looks = looks;
+  LocalizerScore& ekf = score.localizers["ekf"];
+  ekf.position_rmse_m = rms;
+  ekf.pcrlb_position_rms_m = 0.01;
+  ekf.looks = {{1, 3.0, 1e-4, 1e-4}};
+  return score;
+}
+
+Campaign two_arms() {
+  Campaign campaign;
+  campaign.name = "two";
+  campaign.seeds = 3;
+  campaign.arms.resize(2);
+  campaign.arms[0].name = "a";
+  campaign.arms[1].name = "b";
+  for (auto& arm : campaign.arms) arm.setup.primary = "ekf";
+  campaign.baseline = 1;
+  return campaign;
+}
+
+std::vector<std::vector<DriveScore>> two_arms_scores() {
+  return {{drive(1, 0.03, 11), drive(2, 0.05, 12), drive(3, 0.07, 13)},
+          {drive(1, 0.02, 10), drive(2, 0.03, 10), drive(3, 0.04, 10)}};
+}
+
+TEST(CampaignStatistics, DifferencesArePairedBySeed) {
+  const auto statistics = campaign_statistics(two_arms(), two_arms_scores());
+  EXPECT_TRUE(statistics[1].differences.empty());
+  ASSERT_EQ(campaign_metrics().front().key, "position_rmse_m");
+  const Estimate& d = statistics[0].differences.front();
+  // 1, 2, 3 cm: mean 2, standard error 1/√3, t(2 dof, 97.5 %) = 4.3027.
+  EXPECT_NEAR(d.value, 0.02, 1e-12);
+  EXPECT_NEAR(d.interval.high - d.value, 0.01 * 4.3027 / std::sqrt(3.0), 1e-6);
+  EXPECT_NEAR(statistics[0].means.front().value, 0.05, 1e-12);
+}
+
+TEST(CampaignStatistics, CountsWhatWasAnnouncedAndWhatEnded) {
+  auto scores = two_arms_scores();
+  scores[0][0].localizers["ekf"].lost = {{1.0, 2.0, 5.0}, {8.0, std::nullopt, 9.0}};
+  scores[0][2].localizers["ekf"].lost = {{4.0, 3.0, std::nullopt}};
+  const auto losses = campaign_statistics(two_arms(), scores)[0].over_seeds.losses;
+  EXPECT_EQ(losses.episodes, 3);
+  EXPECT_EQ(losses.announced, 2);
+  EXPECT_EQ(losses.ended, 2);
+  EXPECT_NEAR(losses.mean_lost_s, 0.5 * (4.0 + 1.0), 1e-12);
+  EXPECT_NEAR(losses.announced_share.low, clopper_pearson(2, 3).low, 1e-12);
+}
+
+TEST(CampaignReport, HasOneRowAnArmSeedAndLocalizer) {
+  const std::string csv = campaign_csv(two_arms(), two_arms_scores());
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 6);
+  EXPECT_THAT(csv, HasSubstr("\n2,arrived,0.000,12,0,ekf,"));
+  const auto columns = [](const std::string& line) {
+    return std::count(line.begin(), line.end(), ',');
+  };
+  const std::size_t first = csv.find('\n');
+  const std::size_t second = csv.find('\n', first + 1);
+  EXPECT_EQ(columns(csv.substr(0, first)), columns(csv.substr(first, second - first)));
+}
+
+TEST(CampaignReport, NamesTheBaselineAndLeavesItWithoutDifferences) {
+  const auto campaign = two_arms();
+  const auto statistics = campaign_statistics(campaign, two_arms_scores());
+  const auto json = nlohmann::json::parse(campaign_json(campaign, statistics));
+  EXPECT_EQ(json["baseline"], "b");
+  EXPECT_NEAR(json["arms"][0]["differences"]["looks"]["value"].get<double>(), 2.0, 1e-12);
+  EXPECT_TRUE(json["arms"][1]["differences"].empty());
+  EXPECT_THAT(campaign_text(campaign, statistics), HasSubstr("differences from b"));
+  EXPECT_THAT(campaign_markdown(campaign, statistics), HasSubstr("| a | 3/3 [29.2, 100.0] % |"));
+}
+
+TEST(LossWatch, OpensWhenItSaysSoAndClosesWhenItTracksWithASmallError) {
+  std::vector<LostEpisode> episodes;
+  watch_for_loss(episodes, 1.0, false, 0.4);
+  EXPECT_TRUE(episodes.empty());
+  watch_for_loss(episodes, 2.0, true, 0.4);
+  watch_for_loss(episodes, 3.0, true, 0.6);
+  watch_for_loss(episodes, 4.0, false, 0.3);
+  watch_for_loss(episodes, 5.0, false, 0.2);
+  watch_for_loss(episodes, 6.0, false, 0.4);
+  ASSERT_EQ(episodes.size(), 1u);
+  EXPECT_EQ(episodes[0].said_s, 2.0);
+  EXPECT_EQ(episodes[0].passed_s, 3.0);
+  EXPECT_EQ(episodes[0].ended_s, 5.0);
+  EXPECT_TRUE(episodes[0].announced());
+  EXPECT_EQ(episodes[0].began_s(), 2.0);
+}
+
+TEST(LossWatch, AnErrorThatPassesUnsaidIsNotAnnounced) {
+  std::vector<LostEpisode> episodes;
+  watch_for_loss(episodes, 1.0, false, 0.51);
+  watch_for_loss(episodes, 2.0, true, 0.7);
+  ASSERT_EQ(episodes.size(), 1u);
+  EXPECT_FALSE(episodes[0].announced());
+  EXPECT_EQ(episodes[0].began_s(), 1.0);
+  EXPECT_FALSE(episodes[0].ended_s);
+}
+
+TEST(LossWatch, SayingSoAtTheInstantItPassesCounts) {
+  std::vector<LostEpisode> episodes;
+  watch_for_loss(episodes, 1.0, true, 0.51);
+  EXPECT_TRUE(episodes.at(0).announced());
+}
+
+}  // namespace
+}  // namespace vigia::evaluation
