@@ -54,20 +54,19 @@ std::string mission_file(std::size_t arm) {
   return fmt::format("missions/{:03}.yaml", arm);
 }
 
-/// The first lines in which two texts differ, as "… instead of …".
+/// The first line of @p text that @p other lacks, wherever: an override may move a key.
+std::string first_line_not_in(const std::string& text, const std::string& other) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    if (("\n" + other).find("\n" + line + "\n") == std::string::npos)
+      return line.substr(std::min(line.find_first_not_of(' '), line.size()));
+  return "";
+}
+
+/// What two resolved missions differ in.
 std::string first_difference(const std::string& before, const std::string& now) {
-  std::istringstream a(before);
-  std::istringstream b(now);
-  std::string was;
-  std::string is;
-  do {
-    if (!std::getline(a, was)) was.clear();
-    if (!std::getline(b, is)) is.clear();
-  } while (was == is && (a || b));
-  const auto trim = [](const std::string& line) {
-    return line.substr(std::min(line.find_first_not_of(' '), line.size()));
-  };
-  return fmt::format("\"{}\" there, \"{}\" now", trim(was), trim(is));
+  return fmt::format("\"{}\" there, \"{}\" now", first_line_not_in(before, now),
+                     first_line_not_in(now, before));
 }
 
 /// Whether nothing but a beginning of ours stands in the folder.
