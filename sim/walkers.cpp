@@ -12,8 +12,10 @@ using Eigen::Vector2d;
 
 constexpr int kAttempts = 200;
 constexpr double kForesight_s = 1.0;
-constexpr std::array<double, 4> kInstants_s{0.25, 0.5, 0.75, kForesight_s};
+constexpr std::array<double, 5> kInstants_s{0.1, 0.25, 0.5, 0.75, kForesight_s};
 constexpr double kFromWall = 0.05;       // m, beyond the radius
+constexpr double kLeast = 0.1;           // m, from the robot's hull when there is no other way
+constexpr double kTouching = 0.02;       // m, from the robot's hull: nobody steps nearer
 constexpr double kFromEachOther = 0.15;  // m, between hulls
 constexpr double kAtGoal = 0.15;         // m
 constexpr double kFromStart = 1.2;       // m, from the robot's hull when the drive begins
@@ -86,47 +88,58 @@ void Walkers::choose_goal(Walker& walker) {
       2.0 + kPatience * (walker.goal - walker.position).norm() / std::max(walker.pace, 0.05);
 }
 
-double Walkers::room_on(const Walker& walker, const Vector2d& velocity,
-                        const Bystander& robot) const {
+double Walkers::room_on(const Walker& walker, const Vector2d& velocity, const Bystander& robot,
+                        double distance_m) const {
   double room = std::numeric_limits<double>::infinity();
   for (const double t : kInstants_s) {
     const Vector2d p = walker.position + velocity * t;
     const Vector2d robot_then = robot.position + robot.velocity * t;
-    room = std::min(
-        room, (p - robot_then).norm() - robot.radius_m - params_.radius_m - params_.distance_m);
+    room = std::min(room, (p - robot_then).norm() - robot.radius_m - params_.radius_m - distance_m);
     for (const Walker& other : walkers_) {
       if (&other == &walker) continue;
       room = std::min(room, (p - other.position - other.velocity * t).norm() -
                                 2.0 * params_.radius_m - kFromEachOther);
     }
-    if (room >= 0.0 || velocity.squaredNorm() > 0.0)
+    if (velocity.squaredNorm() > 0.0)
       room = std::min(room, plan_.clearance(p) - params_.radius_m - kFromWall);
   }
   return room;
 }
 
-Vector2d Walkers::choose_velocity(const Walker& walker, const Bystander& robot) const {
-  const Vector2d stand = Vector2d::Zero();
-  const bool wants_to_go = walker.pause_s <= 0.0;
-  if (!wants_to_go && room_on(walker, stand, robot) >= 0.0) return stand;
-  const Vector2d to_goal = walker.goal - walker.position;
-  const double wanted =
-      wants_to_go && to_goal.norm() > 1e-6 ? std::atan2(to_goal.y(), to_goal.x()) : walker.heading;
-  Vector2d best = stand;
-  double best_room = room_on(walker, stand, robot);
-  if (wants_to_go && best_room >= 0.0) best_room = 0.0;
-  for (const double off :
-       {0.0, 25.0, -25.0, 50.0, -50.0, 75.0, -75.0, 110.0, -110.0, 150.0, -150.0, 180.0}) {
-    const Vector2d velocity = walker.pace * unit(wanted + from_deg(off));
-    const double room = room_on(walker, velocity, robot);
-    // Farther than square to the goal is gone only to get out of the way.
-    if (room >= 0.0 && (std::abs(off) < 90.0 || best_room < 0.0)) return velocity;
-    if (room > best_room + 1e-6 && best_room < 0.0) {
-      best = velocity;
-      best_room = room;
-    }
+Vector2d Walkers::escape(const Walker& walker, const Bystander& robot) const {
+  constexpr int kDirections = 24;
+  constexpr double kTooNear = 20.0;  // m of way that a metre too near is worth
+  constexpr double kResolve = 2.0;   // s/m: keeps on the way that he has taken
+  const auto worth = [&](const Vector2d& velocity) {
+    const double room = room_on(walker, velocity, robot, kLeast);
+    const Vector2d apart =
+        walker.position - robot.position + (velocity - robot.velocity) * kForesight_s;
+    return apart.norm() + kTooNear * std::min(room, 0.0) + kResolve * velocity.dot(walker.velocity);
+  };
+  Vector2d best = Vector2d::Zero();
+  double most = worth(best);
+  for (int i = 0; i < kDirections; ++i) {
+    const Vector2d velocity = params_.speed_mps * unit(2.0 * kPi * i / kDirections);
+    const double value = worth(velocity);
+    if (value <= most) continue;
+    best = velocity;
+    most = value;
   }
   return best;
+}
+
+Vector2d Walkers::choose_velocity(const Walker& walker, const Bystander& robot) const {
+  const Vector2d stand = Vector2d::Zero();
+  const bool may_stand = room_on(walker, stand, robot, params_.distance_m) >= 0.0;
+  if (walker.pause_s > 0.0 && may_stand) return stand;
+  const Vector2d to_goal = walker.goal - walker.position;
+  const double wanted =
+      to_goal.norm() > 1e-6 ? std::atan2(to_goal.y(), to_goal.x()) : walker.heading;
+  for (const double off : {0.0, 25.0, -25.0, 50.0, -50.0, 75.0, -75.0}) {
+    const Vector2d velocity = walker.pace * unit(wanted + from_deg(off));
+    if (room_on(walker, velocity, robot, params_.distance_m) >= 0.0) return velocity;
+  }
+  return may_stand ? stand : escape(walker, robot);
 }
 
 void Walkers::step(Walker& walker, double dt, const Bystander& robot) {
@@ -143,7 +156,7 @@ void Walkers::step(Walker& walker, double dt, const Bystander& robot) {
   // Nobody walks into the robot or a wall, whatever they foresaw.
   const double now_m = (walker.position - robot.position).norm();
   const double then_m = (next - robot.position).norm();
-  const bool into_robot = then_m < now_m && then_m < robot.radius_m + params_.radius_m + 0.1;
+  const bool into_robot = then_m < now_m && then_m < robot.radius_m + params_.radius_m + kTouching;
   if (into_robot || plan_.clearance(next) < params_.radius_m) {
     walker.velocity.setZero();
     next = walker.position;

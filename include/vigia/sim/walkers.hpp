@@ -21,7 +21,8 @@ struct Bystander {
 
 /// People who walk between random places of a room in straight legs, pause now and then, and give
 /// way to the robot and to each other: of the directions about the one they want to go they take
-/// the first that stays clear for the next second, and stand still or step back when none does.
+/// the first that stays clear for the next second, and stand still when none does. Cornered they
+/// run.
 class Walkers {
  public:
   Walkers(const PeopleParams& params, const FloorPlan& plan, const Bystander& robot,
@@ -52,9 +53,12 @@ class Walkers {
   Eigen::Vector2d free_place(const Bystander& robot);
   void choose_goal(Walker& walker);
   bool straight_way(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const;
-  /// The smallest distance to spare within the next second on this course; negative: blocked.
-  double room_on(const Walker& walker, const Eigen::Vector2d& velocity,
-                 const Bystander& robot) const;
+  /// The smallest distance to spare within the next second on this course, when @p distance_m is
+  /// kept from the robot's hull; negative: blocked.
+  double room_on(const Walker& walker, const Eigen::Vector2d& velocity, const Bystander& robot,
+                 double distance_m) const;
+  /// Cornered: as fast as he can to where the robot will be farthest, past it if need be.
+  Eigen::Vector2d escape(const Walker& walker, const Bystander& robot) const;
   Eigen::Vector2d choose_velocity(const Walker& walker, const Bystander& robot) const;
   void step(Walker& walker, double dt, const Bystander& robot);
 

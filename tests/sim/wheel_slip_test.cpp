@@ -1,0 +1,116 @@
+#include "vigia/sim/wheel_slip.hpp"
+
+#include "sim/room.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "vigia/sim/robot.hpp"
+
+namespace vigia::sim {
+namespace {
+
+constexpr double kSigmas = 4.5;
+constexpr double kStep_m = 0.01;
+
+TEST(WheelSlip, LosesTheStatedShareOfTheWayInSlipsOfTheStatedNumberAndLength) {
+  WheelSlipParams params;
+  params.diameter = params.base = 0.0;
+  WheelSlip slip(params, 1);
+  constexpr int kSteps = 2'000'000;
+  double lost = 0.0;
+  double slipping = 0.0;
+  int slips = 0;
+  bool before = false;
+  for (int i = 0; i < kSteps; ++i) {
+    const bool now = slip.slipping();
+    if (now && !before) ++slips;
+    before = now;
+    const ArcMotion ground = slip.over_ground({kStep_m, 0.0});
+    if (!now) {
+      ASSERT_EQ(ground.distance, kStep_m);
+      ASSERT_EQ(ground.turn, 0.0);
+      continue;
+    }
+    slipping += kStep_m;
+    lost += kStep_m - ground.distance;
+    ASSERT_GE(ground.distance, kStep_m * (1.0 - params.most_loss) - 1e-12);
+    ASSERT_LE(ground.distance, kStep_m * (1.0 - params.least_loss) + 1e-12);
+  }
+  const double driven = kSteps * kStep_m;
+  // Gaps are exponential, so the slips in the way that does not slip are a Poisson number.
+  const double expected = params.per_m * (driven - slipping);
+  EXPECT_NEAR(slips, expected, kSigmas * std::sqrt(expected));
+  const double mean_m = 0.5 * (params.least_m + params.most_m);
+  const double sigma_m = (params.most_m - params.least_m) / std::sqrt(12.0);
+  // A slip ends with the step in which its length is used up.
+  EXPECT_NEAR(slipping / slips, mean_m + 0.5 * kStep_m,
+              kSigmas * sigma_m / std::sqrt(1.0 * slips) + 0.1 * kStep_m);
+  EXPECT_NEAR(lost / slipping, 0.5 * (params.least_loss + params.most_loss),
+              kSigmas * 0.08 / std::sqrt(12.0) * 1.1 / std::sqrt(1.0 * slips));
+}
+
+TEST(WheelSlip, ScaleErrorsStayAndHaveTheStatedSpread) {
+  WheelSlipParams params;
+  params.per_m = 0.0;
+  double square = 0.0;
+  constexpr int kSeeds = 2000;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    WheelSlip slip(params, seed);
+    const ArcMotion first = slip.over_ground({1.0, 1.0});
+    const ArcMotion second = slip.over_ground({1.0, 1.0});
+    EXPECT_EQ(first.distance, second.distance);
+    EXPECT_EQ(first.turn, second.turn);
+    square += std::pow(first.distance - 1.0, 2) + std::pow(first.turn - 1.0, 2);
+  }
+  EXPECT_NEAR(square / (2.0 * kSeeds) / (0.005 * 0.005), 1.0,
+              kSigmas * std::sqrt(2.0 / (2.0 * kSeeds)));
+}
+
+RobotParams quiet_robot() {
+  RobotParams params;
+  params.odometry = {0.0, 0.0, 0.0};
+  params.sensor = {0.0, 0.0, 0.0};
+  return params;
+}
+
+TEST(Robot, ReportsWhatItsWheelsDoNotWhatTheBaseDoes) {
+  WheelSlipParams params;
+  params.per_m = 0.0;
+  params.diameter = 0.05;
+  params.base = 0.0;
+  Robot slipping(quiet_robot(), {}, 8.0, 1);
+  Robot firm(quiet_robot(), {}, 8.0, 1);
+  slipping.set_wheel_slip(WheelSlip(params, 4));
+  for (Robot* robot : {&slipping, &firm}) {
+    robot->command({0.2, 0.1}, {});
+    robot->advance(Duration::from_seconds(5.0));
+  }
+  EXPECT_GT((slipping.truth().pose.position() - firm.truth().pose.position()).norm(), 1e-3);
+  EXPECT_EQ(slipping.read_odometry().trans, firm.read_odometry().trans);
+}
+
+TEST(Robot, EncodersWithBacklashLagBehindByHalfTheirPlay) {
+  Robot robot(quiet_robot(), {}, 8.0, 1);
+  robot.set_backlash(0.002);
+  const auto run = [&](double rate, double seconds) {
+    robot.command({}, {{rate, rate}, 0.0});
+    robot.advance(Duration::from_seconds(seconds));
+  };
+  run(0.2, 1.0);
+  EXPECT_NEAR(robot.truth().head.pan - robot.read_head().angles.pan, 0.001, 1e-9);
+  EXPECT_NEAR(robot.truth().head.tilt - robot.read_head().angles.tilt, 0.001, 1e-9);
+  run(-0.2, 1.0);
+  EXPECT_NEAR(robot.truth().head.pan - robot.read_head().angles.pan, -0.001, 1e-9);
+  // Within the play the reading does not move.
+  run(0.0, 0.5);
+  const double reading = robot.read_head().angles.pan;
+  const double axis = robot.truth().head.pan;
+  run(0.005, 0.2);
+  EXPECT_GT(robot.truth().head.pan, axis);
+  EXPECT_EQ(robot.read_head().angles.pan, reading);
+}
+
+}  // namespace
+}  // namespace vigia::sim
