@@ -8,7 +8,7 @@
 namespace vigia::planner {
 namespace {
 
-constexpr double kSample_m = 0.05;
+constexpr double kSample_m = 0.02;
 
 /// Studies one landmark from the control areas of a path.
 class Study {
