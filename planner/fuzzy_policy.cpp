@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 namespace vigia::planner {
 namespace {
 
@@ -24,8 +26,7 @@ bool along_x(const Eigen::Vector2d& sight_w) {
 
 class FuzzyPolicy final : public LookPolicy {
  public:
-  explicit FuzzyPolicy(const LookPolicyParts& parts)
-      : parts_(parts), supervisors_(parts.rules) {}
+  explicit FuzzyPolicy(const LookPolicyParts& parts) : parts_(parts), supervisors_(parts.rules) {}
 
   std::string_view name() const override { return "fuzzy"; }
 
@@ -39,8 +40,15 @@ class FuzzyPolicy final : public LookPolicy {
   std::optional<LookChoice> choose(const LookContext& context) override {
     if (context.standing) return choose_standing(context);
     last_along_x_.reset();
-    if (auto choice = choose_preselected(context)) return choice;
-    return choose_visible(context);
+    const auto preselected = best_preselected(context);
+    const auto visible = best_visible(context);
+    if (preselected &&
+        (!visible || preselected->value >= parts_.perception.least_value * visible->value))
+      return choice(*preselected, "preselected for the control area, at its zoom");
+    if (!visible) return std::nullopt;
+    return choice(*visible, preselected
+                                ? "visible, and suits the uncertainty better than the plan's"
+                                : "visible; no preselected landmark is usable here");
   }
 
  private:
@@ -52,30 +60,32 @@ class FuzzyPolicy final : public LookPolicy {
     judged.landmark = &landmark;
     judged.zoom_mm = zoom_mm;
     const double range = context.visibility.range(landmark, arrival.pose);
-    judged.suitability = supervisors_.suitability(
-        range, context.visibility.view_angle(landmark, arrival.pose));
+    judged.suitability =
+        supervisors_.suitability(range, context.visibility.view_angle(landmark, arrival.pose));
     judged.sight_w = landmark.centre_w().head<2>() - arrival.pose.position();
+    // The supervisor speaks of the robot's own axes.
+    const Eigen::Matrix2d turned = Eigen::Rotation2Dd(-arrival.pose.theta).toRotationMatrix();
     judged.value = judged.suitability *
-                   supervisors_.choice(judged.sight_w,
-                                       context.belief.covariance.topLeftCorner<2, 2>());
-    const double focal =
-        parts_.head.zoom.at(zoom_for(landmark, range, parts_.head)).px;
+                   supervisors_.choice(turned * judged.sight_w,
+                                       turned * context.belief.covariance.topLeftCorner<2, 2>() *
+                                           turned.transpose());
+    const double focal = parts_.head.zoom.at(zoom_for(landmark, range, parts_.head)).px;
     const double wanted = parts_.head.radius_px * range / disc_radius(landmark).value_or(range);
     judged.zoom_misfit = std::abs(std::log(focal / wanted));
     return judged;
   }
 
-  static const Judged* best_of(const std::vector<Judged>& all) {
+  static std::optional<Judged> best_of(const std::vector<Judged>& all) {
     const auto best = std::max_element(
         all.begin(), all.end(), [](const Judged& a, const Judged& b) { return a.value < b.value; });
-    return best == all.end() ? nullptr : &*best;
+    return best == all.end() ? std::nullopt : std::optional(*best);
   }
 
   static LookChoice choice(const Judged& judged, const std::string& reason) {
     return {judged.landmark->id, judged.zoom_mm, judged.suitability, reason};
   }
 
-  std::optional<LookChoice> choose_preselected(const LookContext& context) {
+  std::optional<Judged> best_preselected(const LookContext& context) {
     const AreaPlan* area = plan_.at(context.station_m);
     if (area == nullptr) return std::nullopt;
     std::vector<Judged> usable;
@@ -84,18 +94,14 @@ class FuzzyPolicy final : public LookPolicy {
       const auto judged = judge(*landmark, area->zoom_mm, context);
       if (judged && judged->suitability >= parts_.perception.reject) usable.push_back(*judged);
     }
-    const Judged* best = best_of(usable);
-    if (best == nullptr || best->value < parts_.perception.least_value) return std::nullopt;
-    return choice(*best, "preselected for the control area, at its zoom");
+    return best_of(usable);
   }
 
-  std::optional<LookChoice> choose_visible(const LookContext& context) {
+  std::optional<Judged> best_visible(const LookContext& context) {
     std::vector<Judged> usable;
     for (const Landmark& landmark : context.landmarks.all())
       if (const auto judged = judge(landmark, std::nullopt, context)) usable.push_back(*judged);
-    const Judged* best = best_of(usable);
-    if (best == nullptr) return std::nullopt;
-    return choice(*best, "visible; no preselected landmark is usable here");
+    return best_of(usable);
   }
 
   std::optional<LookChoice> choose_standing(const LookContext& context) {
@@ -104,7 +110,10 @@ class FuzzyPolicy final : public LookPolicy {
       if (const auto judged = judge(landmark, std::nullopt, context)) usable.push_back(*judged);
     if (usable.empty()) return std::nullopt;
     std::string reason = "standing: allows the best zoom";
-    if (last_along_x_) {
+    const double limit = parts_.perception.both_uncertain_m;
+    const auto& covariance = context.belief.covariance;
+    const bool both = covariance(0, 0) > limit * limit && covariance(1, 1) > limit * limit;
+    if (last_along_x_ && both) {
       const bool wanted = !*last_along_x_;
       const auto other = std::stable_partition(
           usable.begin(), usable.end(),
@@ -114,8 +123,8 @@ class FuzzyPolicy final : public LookPolicy {
         reason += ", along the other axis";
       }
     }
-    const auto best = std::min_element(
-        usable.begin(), usable.end(), [](const Judged& a, const Judged& b) {
+    const auto best =
+        std::min_element(usable.begin(), usable.end(), [](const Judged& a, const Judged& b) {
           return std::pair(a.zoom_misfit, -a.suitability) <
                  std::pair(b.zoom_misfit, -b.suitability);
         });

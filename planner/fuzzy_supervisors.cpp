@@ -39,7 +39,7 @@ double core_of(const FuzzyEngine& engine, std::size_t group) {
 FuzzySupervisors::FuzzySupervisors(const FuzzyRules& rules)
     : suitability_(read(rules.suitability, {"distance_m", "view_angle_deg"})),
       groups_(read(rules.zoom_groups, {"distance_m"})),
-      choice_(read(rules.choice, {"bearing_deg", "sigma_x_cm", "sigma_y_cm"})) {
+      choice_(read(rules.choice, {"bearing_deg", "sigma_along_cm", "sigma_across_cm"})) {
   for (std::size_t group = 0; group < zoom_group_count(); ++group)
     zoom_distances_.push_back(std::max(groups_.evaluate({core_of(groups_, group)}), 0.1));
 }
@@ -48,11 +48,12 @@ double FuzzySupervisors::suitability(double distance_m, double view_angle) {
   return std::clamp(suitability_.evaluate({distance_m, to_deg(view_angle)}), 0.0, 1.0);
 }
 
-double FuzzySupervisors::choice(const Eigen::Vector2d& sight_w, const Eigen::Matrix2d& covariance) {
-  const double folded = std::atan2(std::abs(sight_w.y()), std::abs(sight_w.x()));
-  const double sigma_x = std::sqrt(std::max(covariance(0, 0), 0.0));
-  const double sigma_y = std::sqrt(std::max(covariance(1, 1), 0.0));
-  return std::clamp(choice_.evaluate({to_deg(folded), 100.0 * sigma_x, 100.0 * sigma_y}), 0.0, 1.0);
+double FuzzySupervisors::choice(const Eigen::Vector2d& sight_r, const Eigen::Matrix2d& covariance) {
+  const double folded = std::atan2(std::abs(sight_r.y()), sight_r.x());
+  const double sigma_along = std::sqrt(std::max(covariance(0, 0), 0.0));
+  const double sigma_across = std::sqrt(std::max(covariance(1, 1), 0.0));
+  return std::clamp(choice_.evaluate({to_deg(folded), 100.0 * sigma_along, 100.0 * sigma_across}),
+                    0.0, 1.0);
 }
 
 }  // namespace vigia::planner

@@ -8,7 +8,7 @@
 namespace vigia::planner {
 namespace {
 
-constexpr double kSample_m = 0.05;
+constexpr double kSample_m = 0.02;
 
 /// Studies one landmark from the control areas of a path.
 class Study {
@@ -27,8 +27,7 @@ class Study {
     Eigen::Vector2d sight = Eigen::Vector2d::Zero();
     for (const ControlPosition& position : area.positions) {
       const double distance = visibility_.range(landmark, position.pose);
-      const Eigen::Vector2d towards =
-          landmark.centre_w().head<2>() - position.pose.position();
+      const Eigen::Vector2d towards = landmark.centre_w().head<2>() - position.pose.position();
       sight += towards.normalized();
       if (usable(landmark, position)) {
         study.suitability +=
@@ -42,11 +41,10 @@ class Study {
       const auto degrees = supervisors_.zoom_membership(distance);
       for (std::size_t g = 0; g < degrees.size(); ++g) membership[g] += degrees[g];
     }
-    if (!area.positions.empty())
-      study.suitability /= static_cast<double>(area.positions.size());
+    if (!area.positions.empty()) study.suitability /= static_cast<double>(area.positions.size());
     study.nearest_m = std::min(study.nearest_m, study.farthest_m);
-    study.group = static_cast<std::size_t>(
-        std::max_element(membership.begin(), membership.end()) - membership.begin());
+    study.group = static_cast<std::size_t>(std::max_element(membership.begin(), membership.end()) -
+                                           membership.begin());
     if (sight.norm() > 0.0) study.sight_w = sight.normalized();
     return study;
   }

@@ -137,9 +137,9 @@ double GazeController::arrival_time(const GazeInput& input, const HeadAngles& ai
 
 double GazeController::held_radius(double radius_px, const Intrinsics& intrinsics) const {
   if (!active().zoom_mm) return active().radius_px;
-  return std::clamp(radius_px, params_.planned_least_px,
-                    std::max(params_.planned_most * half_image(intrinsics),
-                             params_.planned_least_px));
+  return std::clamp(
+      radius_px, params_.planned_least_px,
+      std::max(params_.planned_most * half_image(intrinsics), params_.planned_least_px));
 }
 
 GazeOutput GazeController::rest(const GazeInput& input) const {

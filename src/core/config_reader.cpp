@@ -280,8 +280,7 @@ std::optional<MapReader::NamedText> MapReader::text_or_file(const std::string& k
   ConfigNode& node = *node_->find(key);
   if (value.find('\n') != std::string::npos)
     return NamedText{value, to_string(node.where) + " (" + path(key) + ")"};
-  const std::filesystem::path file =
-      std::filesystem::path(node.where.file).parent_path() / value;
+  const std::filesystem::path file = std::filesystem::path(node.where.file).parent_path() / value;
   std::ifstream in(file, std::ios::binary);
   std::string content{std::istreambuf_iterator<char>(in), {}};
   if (!in || content.find('\n') == std::string::npos)

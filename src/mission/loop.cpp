@@ -216,8 +216,8 @@ void Loop::plan() {
     begin_recovery();
     return;
   }
-  const auto demand = scheduler_.demand(now_, belief(), travelled_m_,
-                                          pilot_.path().length() - pilot_.station());
+  const auto demand =
+      scheduler_.demand(now_, belief(), travelled_m_, pilot_.path().length() - pilot_.station());
   // A landmark that is not where the belief has it is reason enough to stand still.
   const bool stop = demand == planner::LookDemand::stopped || failed_in_a_row_ > 0;
   tell_limits(demand, stop);

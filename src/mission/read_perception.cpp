@@ -25,6 +25,7 @@ void read_perception(MapReader& look, LookParams& params) {
   planner::PerceptionParams& plan = params.perception;
   plan.reject = fuzzy.number("reject", {0.0, 1.0}, plan.reject);
   plan.least_value = fuzzy.number("least_value", {0.0, 1.0}, plan.least_value);
+  plan.both_uncertain_m = fuzzy.number("both_uncertain_m", {0.0, 100.0}, plan.both_uncertain_m);
   plan.zoom_cost_per_s = fuzzy.number("zoom_cost_per_s", {0.0, 100.0}, plan.zoom_cost_per_s);
   plan.least_radius_px = fuzzy.number("least_radius_px", {1.0, 1000.0}, plan.least_radius_px);
   plan.most_radius_px =

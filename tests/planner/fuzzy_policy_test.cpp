@@ -11,8 +11,9 @@ class FuzzyPolicyTest : public ::testing::Test {
  protected:
   FuzzyPolicyTest()
       : visibility_(armingol_.visibility()),
-        parts_{{}, RandomStream(1, "look"), armingol_.world.landmarks, visibility_, armingol_.head,
-               {}, {}},
+        parts_{{},          RandomStream(1, "look"), armingol_.world.landmarks,
+               visibility_, armingol_.head,          {},
+               {}},
         supervisors_(parts_.rules),
         plan_(plan_perception(armingol_.path, armingol_.world.landmarks, visibility_,
                               armingol_.head, supervisors_, {})),
@@ -41,16 +42,19 @@ class FuzzyPolicyTest : public ::testing::Test {
   OdometryNoise odometry_;
 };
 
-TEST_F(FuzzyPolicyTest, InMotionTakesAPreselectedLandmarkAtTheZoomOfItsArea) {
-  for (const double station : {3.5, 7.0, 10.0, 14.0, 16.5}) {
+TEST_F(FuzzyPolicyTest, InMotionAPreselectedLandmarkComesAtTheZoomOfItsArea) {
+  int planned = 0;
+  for (double station = 0.2; station < 21.0; station += 0.4) {
     const auto choice = choose_at(station);
-    ASSERT_TRUE(choice) << station;
+    if (!choice || !choice->zoom_mm) continue;
+    ++planned;
     const AreaPlan& area = *plan_.at(station);
     EXPECT_EQ(std::count(area.preselected.begin(), area.preselected.end(), choice->landmark), 1)
         << station;
     EXPECT_EQ(choice->zoom_mm, area.zoom_mm) << station;
     EXPECT_GE(*choice->suitability, PerceptionParams{}.reject) << station;
   }
+  EXPECT_GE(planned, 20);
 }
 
 TEST_F(FuzzyPolicyTest, AloneOfThePoliciesItWaitsWhereItWouldLook) {

@@ -165,6 +165,55 @@ TEST_F(GazeControllerTest, ZoomIsPresetSoThatTheDiscHasTheOrderedSizeWhenAcquire
   EXPECT_NEAR(std::log(sighting->radius_px / 24.0), 0.0, GazeParams{}.settle_focal + 1e-3);
 }
 
+TEST_F(GazeControllerTest, APlannedZoomStaysAsItIsWhileTheLandmarkIsWatched) {
+  GazeOrder order = order_for(1);
+  order.zoom_mm = 12.0;
+  order.dwell_s = 20.0;
+  gaze_.order(order);
+  ASSERT_TRUE(run_to_state(GazeState::track, 5.0));
+  // Between 8 px and half of half the image the size is the plan's business.
+  for (int i = 0; i < 100; ++i) {
+    tick();
+    ASSERT_NEAR(bench_.head.zoom_mm, 12.0, 12.0 * GazeParams{}.settle_focal);
+  }
+}
+
+TEST_F(GazeControllerTest, APlannedZoomGivesWayWhereTheLandmarkWouldBeTooSmallOrTooLarge) {
+  for (const auto& [x, zoom] : {std::pair(-12.0, 8.0), std::pair(3.2, 48.0)}) {
+    bench_.pose = {x, 1.0, 0.0};
+    GazeOrder order = order_for(1);
+    order.zoom_mm = zoom;
+    gaze_.order(order);
+    ASSERT_TRUE(run_to_state(GazeState::track, 8.0)) << x;
+    const auto sighting = look(1);
+    ASSERT_TRUE(sighting);
+    const double slack = std::exp(GazeParams{}.settle_focal + 1e-3);
+    EXPECT_GE(sighting->radius_px * slack, GazeParams{}.planned_least_px) << x;
+    EXPECT_LE(sighting->radius_px, slack * GazeParams{}.planned_most * 240.0) << x;
+    gaze_.cancel();
+  }
+}
+
+TEST_F(GazeControllerTest, IdleItWaitsWhereItIsToldTo) {
+  GazeOrder waiting = order_for(2);
+  waiting.zoom_mm = 12.0;
+  gaze_.rest_at(waiting);
+  run(4.0);
+  EXPECT_EQ(gaze_.state(), GazeState::idle);
+  EXPECT_EQ(request_, TrackRequest::none);
+  EXPECT_NEAR(bench_.head.zoom_mm, 12.0, 0.05);
+  EXPECT_LT(error_px(2), 5.0);
+  // The order that was waited for begins to acquire at once.
+  gaze_.order(waiting);
+  tick();
+  EXPECT_EQ(gaze_.state(), GazeState::acquire);
+  gaze_.cancel();
+  gaze_.rest_at(std::nullopt);
+  tick();
+  EXPECT_EQ(last_.command.angles.pan, 0.0);
+  EXPECT_EQ(last_.command.zoom_mm_s, 0.0);
+}
+
 TEST_F(GazeControllerTest, HeadAndZoomMeetAMovingLandmarkWhereItWillBe) {
   drive_ = {0.3, 0.1};
   run(2.0);

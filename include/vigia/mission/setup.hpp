@@ -33,7 +33,7 @@ struct LookParams {
   double exclude_s = 5.0;      ///< how long a landmark that failed is left out
   int rejections_to_drop = 5;  ///< gated frames in a row after which a look is given up
   int failures_to_lose = 3;    ///< looks in a row that showed nothing, after which belief is lost
-  planner::FuzzyRules rules;             ///< of the policy "fuzzy"
+  planner::FuzzyRules rules;   ///< of the policy "fuzzy"
   planner::PerceptionParams perception;  ///< of the policy "fuzzy"
 };
 

@@ -47,9 +47,9 @@ class FuzzySupervisors {
   /// to the group.
   double zoom_distance(std::size_t group) const { return zoom_distances_.at(group); }
 
-  /// Second supervisor (§3.1): suitability, in [0, 1], of a look along @p sight_w (a direction in the
-  /// floor plane) for a position with that covariance (m²).
-  double choice(const Eigen::Vector2d& sight_w, const Eigen::Matrix2d& covariance);
+  /// Second supervisor (§3.1): suitability, in [0, 1], of a look along @p sight_r for a position
+  /// with that covariance (m²), both in the axes of the robot (x ahead, y left).
+  double choice(const Eigen::Vector2d& sight_r, const Eigen::Matrix2d& covariance);
 
  private:
   FuzzyEngine suitability_;

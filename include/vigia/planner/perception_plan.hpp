@@ -13,13 +13,16 @@ namespace vigia::planner {
 
 struct PerceptionParams {
   PathModelParams path;
-  double visible_share = 0.5;   ///< seen from this share of an area, a landmark counts as visible
-  double usable_share = 0.8;    ///< seen from this share of a control position's disc, as usable there
-  double reject = 0.25;         ///< a landmark of less suitability is rejected
-  /// A preselected landmark whose suitability times that of its direction now is less is passed over
-  /// in favour of all that are visible.
-  double least_value = 0.3;
-  double zoom_cost_per_s = 0.2; ///< suitability that a second of the zoom's travel outweighs
+  double visible_share = 0.5;  ///< seen from this share of an area, a landmark counts as visible
+  double usable_share =
+      0.8;               ///< seen from this share of a control position's disc, as usable there
+  double reject = 0.25;  ///< a landmark of less suitability is rejected
+  /// In motion, the best preselected landmark is taken when its value (both supervisors' product)
+  /// is at least this share of the best visible one's.
+  double least_value = 0.9;
+  /// Standing, landmarks along both axes are taken in turn while both axes' σ exceed this.
+  double both_uncertain_m = 0.05;
+  double zoom_cost_per_s = 0.2;   ///< suitability that a second of the zoom's travel outweighs
   double least_radius_px = 10.0;  ///< at the area's zoom; the margin that needs no optics move …
   double most_radius_px = 80.0;   ///< … on both sides
 };
@@ -39,11 +42,11 @@ struct LandmarkStudy {
 /// What the plan has for one control area.
 struct AreaPlan {
   ControlArea area;
-  std::vector<LandmarkStudy> visible;      ///< in the order of the map
-  std::optional<std::size_t> group;        ///< zoom group chosen; nothing without a candidate
-  double zoom_mm = 0.0;                    ///< of that group
-  std::optional<LandmarkId> chosen;        ///< the most suitable of the group
-  std::vector<LandmarkId> preselected;     ///< chosen first, then the best along x and along y
+  std::vector<LandmarkStudy> visible;   ///< in the order of the map
+  std::optional<std::size_t> group;     ///< zoom group chosen; nothing without a candidate
+  double zoom_mm = 0.0;                 ///< of that group
+  std::optional<LandmarkId> chosen;     ///< the most suitable of the group
+  std::vector<LandmarkId> preselected;  ///< chosen first, then the best along x and along y
 
   const LandmarkStudy* find(LandmarkId id) const;
 };

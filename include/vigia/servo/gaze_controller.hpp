@@ -69,8 +69,8 @@ struct GazeOutput {
 /// - slew: head and zoom go where the belief has the landmark; both there → acquire.
 /// - acquire: holds the aim, asks for the landmark; seen → track, after acquire_s → search.
 /// - track: servo on the image, the zoom holds the size, or stays where the order has planned it as
-///   long as the landmark is neither too small nor too large there; after dwell_s → released (idle),
-///   unseen for lost_grace_s → lost.
+///   long as the landmark is neither too small nor too large there; after dwell_s → released
+///   (idle), unseen for lost_grace_s → lost.
 /// - lost: holds the aim where it was last seen; seen → track, after acquire_s → search.
 /// - search: spiral about the aim, the zoom widening; seen → track, after search_s → expired.
 ///
