@@ -73,8 +73,9 @@ void check_in_room(const PlacedLandmark& placed, const FloorPlan& plan) {
   if (centre.z() - reach < -kSlack)
     throw placed.reader.error("centre_m", thing(placed.landmark) + " reaches below the floor");
   if (centre.z() + reach > plan.ceiling_m() + kSlack)
-    throw placed.reader.error("centre_m", thing(placed.landmark) + " reaches above the ceiling at " +
-                                              metres(plan.ceiling_m()));
+    throw placed.reader.error(
+        "centre_m",
+        thing(placed.landmark) + " reaches above the ceiling at " + metres(plan.ceiling_m()));
 }
 
 void check_fits(const PlacedLandmark& placed, const Wall& face) {
@@ -189,8 +190,8 @@ void check_against_earlier(const std::vector<PlacedLandmark>& placed) {
                                         " occurs twice; it was given before at " +
                                         to_string(other->reader.where("id")));
     if (const char* key = shared_code(last.landmark, other->landmark))
-      throw last.reader.error(key, "landmark " + std::to_string(other->landmark.id) +
-                                       " shows the same code");
+      throw last.reader.error(
+          key, "landmark " + std::to_string(other->landmark.id) + " shows the same code");
     if (overlap(last.landmark, other->landmark))
       throw last.reader.error(
           "centre_m", "the landmark overlaps landmark " + std::to_string(other->landmark.id));
