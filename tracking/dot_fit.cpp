@@ -13,16 +13,11 @@ using imaging::Window;
 // Grey levels of dot and paper in the mixture: room for noise on both sides.
 constexpr double kDot = 64.0;
 constexpr double kGround = 192.0;
-constexpr double kEdgeBand = 3.0;      // px beyond the fitted band, for the fit's own steps
 constexpr double kMinContrast = 12.0;  // levels, all channels together
 constexpr double kMinContrastToNoise = 4.0;
 constexpr double kGroundNear = 2.0;  // px outside a dot where its blur ends, and
 constexpr double kGroundFar = 5.5;   // where the next dot may begin
 constexpr int kFractionBits = 12;
-
-Window box_of(const EllipseShape& shape, double blur) {
-  return window_round(shape, 2.5 * blur + 0.3 + kEdgeBand);
-}
 
 Eigen::Array3d channels(const vpRGBa& pixel) {
   return {static_cast<double>(pixel.R), static_cast<double>(pixel.G), static_cast<double>(pixel.B)};
@@ -44,7 +39,7 @@ void scan(const ColourBlock& block, const Window& box, const EllipseShape& shape
 }
 
 int step_of(double minor_axis) {
-  return std::max(1, static_cast<int>(minor_axis / 6.0));
+  return std::max(1, static_cast<int>(minor_axis / 4.0));
 }
 
 /// Means inside and outside an outline that is only roughly known.
@@ -116,25 +111,25 @@ void mix(const ColourBlock& block, const Window& box, const ColourLevels& levels
   const double scale = (kGround - kDot) / (weight * contrast).sum();
   const double unit = 1 << kFractionBits;
   const auto fixed = [&](double value) { return static_cast<int>(std::lround(value * unit)); };
-  const int r = fixed(scale * weight[0]);
-  const int g = fixed(scale * weight[1]);
-  const int b = fixed(scale * weight[2]);
-  const int offset = fixed(kDot + 0.5 - scale * (weight * levels.dot).sum());
+  const ChannelMixture mixture{fixed(scale * weight[0]), fixed(scale * weight[1]),
+                               fixed(scale * weight[2]),
+                               fixed(kDot + 0.5 - scale * (weight * levels.dot).sum())};
   out.resize(static_cast<unsigned>(box.height), static_cast<unsigned>(box.width));
   for (int v = 0; v < box.height; ++v) {
     const vpRGBa* row = block.row(box.v + v) + (box.u - block.window().u);
-    unsigned char* line = out[static_cast<unsigned>(v)];
-    for (int u = 0; u < box.width; ++u) {
-      const int value = (r * row[u].R + g * row[u].G + b * row[u].B + offset) >> kFractionBits;
-      line[u] = static_cast<unsigned char>(std::clamp(value, 0, 255));
-    }
+    mix_channels(&row->R, mixture, box.width, out[static_cast<unsigned>(v)]);
   }
 }
 
 }  // namespace
 
+Window dot_box(const EllipseShape& shape, double blur) {
+  constexpr double kSteps = 3.0;  // px that the fit may move
+  return window_round(shape, 2.5 * blur + 0.3 + kSteps);
+}
+
 DotFit DotFitter::fit(const ColourBlock& block, const EllipseShape& start, double blur) {
-  const Window box = intersect(box_of(start, blur), block.window());
+  const Window box = intersect(dot_box(start, blur), block.window());
   if (box.empty()) return {};
   return fit(block, start, blur, rough_levels(block, box, start));
 }
@@ -143,7 +138,7 @@ DotFit DotFitter::fit(const ColourBlock& block, const EllipseShape& start, doubl
                       const ColourLevels& levels) {
   DotFit result;
   result.shape = start;
-  const Window box = intersect(box_of(start, blur), block.window());
+  const Window box = intersect(dot_box(start, blur), block.window());
   if (box.width < 5 || box.height < 5) return result;
   result.status = DotStatus::faint;
   const Eigen::Array3d weight = (levels.ground - levels.dot).max(0.0);

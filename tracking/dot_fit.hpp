@@ -24,6 +24,9 @@ struct DotFit {
   double blur = 0.8;  ///< px
 };
 
+/// The pixels that the fit of a dot reads.
+imaging::Window dot_box(const EllipseShape& shape, double blur);
+
 /// Measures one dot of a colour pattern: an ellipse with a blurred edge is fitted to the mixture of
 /// the channels weighted by the dot's contrast in each, which has all the information that the
 /// three channels have of the outline when their noise is equal and independent. Then the levels

@@ -256,10 +256,10 @@ std::optional<PatternSight> PatternEye::follow(const Frame& frame, const Pattern
     DotFit& dot = sight.dots[i];
     dot.status = DotStatus::cut;
     if (cut_by(frame.full(), start)) continue;
-    block_.read(frame, intersect(window_round(start, kDotBox), frame.full()));
     const DotFit& before = last.dots[i];
+    block_.read(frame, intersect(dot_box(start, before.blur), frame.full()));
     dot = before.status == DotStatus::whole ? fitter_.fit(block_, start, before.blur, before.levels)
-                                            : fitter_.fit(block_, start, last.dots[0].blur);
+                                            : fitter_.fit(block_, start, before.blur);
     if (dot.status == DotStatus::whole) points.push_back({places[i], dot.shape.centre});
   }
   if (static_cast<int>(points.size()) < parameters_.min_dots) return std::nullopt;

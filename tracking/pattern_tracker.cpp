@@ -67,6 +67,12 @@ class PatternTracker::State {
     motion_.setZero();
   }
 
+  /// Without a map the code that was tracked before says what is wanted.
+  bool is_wanted(const PointsFeature& feature) const {
+    if (expected_) return feature.landmark == expected_;
+    return sight_ && feature.code == sight_->feature.code;
+  }
+
   /// Finds the expected pattern in a window; else says what is there instead.
   PointsFeature search(const Frame& frame, const std::vector<LabelledPoint>& points,
                        double margin) {
@@ -74,7 +80,7 @@ class PatternTracker::State {
     if (window.empty()) return lost(FeatureStatus::not_found);
     const std::vector<PatternSight> sights = eye_.find(frame, window);
     for (const PatternSight& sight : sights)
-      if (sight.feature.status == FeatureStatus::found && sight.feature.landmark == expected_) {
+      if (sight.feature.status == FeatureStatus::found && is_wanted(sight.feature)) {
         keep(sight);
         return sight.feature;
       }
