@@ -9,6 +9,7 @@ namespace vigia::app {
 void add_run(CLI::App& app, int& status);
 void add_check(CLI::App& app, int& status);
 void add_track(CLI::App& app, int& status);
+void add_landmark(CLI::App& app, int& status);
 void add_evaluate(CLI::App& app, int& status);
 
 }  // namespace vigia::app

@@ -34,6 +34,7 @@ int run_program(int argc, char** argv) {
   vigia::app::add_run(app, status);
   vigia::app::add_check(app, status);
   vigia::app::add_track(app, status);
+  vigia::app::add_landmark(app, status);
   vigia::app::add_evaluate(app, status);
   try {
     app.parse(argc, argv);
