@@ -15,6 +15,7 @@ constexpr double kStartBlur = 0.8;      // px
 constexpr double kSmallDot = 2.0;       // px, least semi-minor axis of a blob
 constexpr double kFlattest = 0.25;      // b/a of a dot
 constexpr double kDotBox = 8.0;         // px round a dot that its fit may read
+constexpr int kRowStep = 3;             // rows from one that the blob finder scans to the next
 constexpr double kMaxGrowth = 0.3;      // of log size, of a dot against its prediction
 constexpr double kCentreMargin = 12.0;  // px by which the centre-point may jump between frames
 constexpr int kEnoughNear = 4;          // dots that betray a hidden pattern
@@ -43,7 +44,7 @@ BlobFinderParameters finder_parameters(double min_contrast) {
   parameters.min_axis_px = kSmallDot;
   parameters.min_axis_ratio = kFlattest;
   parameters.min_contrast = min_contrast;
-  parameters.row_step = 3;
+  parameters.row_step = kRowStep;
   return parameters;
 }
 
@@ -53,6 +54,15 @@ double size_of(const EllipseShape& shape) {
 
 bool cut_by(const Window& frame, const EllipseShape& shape) {
   return !contains(frame, window_round(shape, 1.0));
+}
+
+/// The window grown so that it begins on the full frame's grid of halved pixels and scanned rows:
+/// in a window the same is found as in the full frame.
+Window on_grid(const Window& window, const Window& frame) {
+  constexpr int kGrid = 2 * kRowStep;
+  const int u = window.u / kGrid * kGrid;
+  const int v = window.v / kGrid * kGrid;
+  return intersect({u, v, window.right() + 1 - u, window.bottom() + 1 - v}, frame);
 }
 
 /// The landmark of the map that shows a code with this geometry.
@@ -93,7 +103,7 @@ void PatternEye::detect(bool halved) {
 
 std::vector<PatternSight> PatternEye::find(const Frame& frame, const Window& window) {
   std::vector<PatternSight> sights;
-  block_.read(frame, window);
+  block_.read(frame, on_grid(window, frame.full()));
   // The halved picture shows large dots through the noise; small ones need all pixels.
   for (const bool halved : {true, false}) {
     if (std::min(window.width, window.height) < 16) continue;
@@ -165,12 +175,12 @@ PatternSight PatternEye::measure(const PatternCandidate& candidate, const Window
 void PatternEye::read(PatternSight& sight) {
   DotLevels levels;
   bool cut = false;
-  bool faint = false;
+  int faint = 0;
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const DotFit& dot = sight.dots[i];
     if (dot.status == DotStatus::whole) levels[i] = dot.levels;
     cut = cut || dot.status == DotStatus::cut;
-    faint = faint || dot.status == DotStatus::faint;
+    faint += dot.status == DotStatus::faint ? 1 : 0;
   }
   const CodeReading reading = read_code(levels, parameters_.min_confidence);
   PointsFeature& feature = sight.feature;
@@ -178,7 +188,7 @@ void PatternEye::read(PatternSight& sight) {
   if (reading.status != ReadStatus::read) {
     feature.status = reading.status == ReadStatus::doubtful ? FeatureStatus::unreadable
                      : cut                                  ? FeatureStatus::cut_by_border
-                     : faint                                ? FeatureStatus::low_contrast
+                     : 2 * faint > kPatternDots             ? FeatureStatus::low_contrast
                                                             : FeatureStatus::occluded;
     return;
   }

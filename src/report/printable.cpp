@@ -169,7 +169,11 @@ void print_landmark(const LandmarkShape& shape, const std::filesystem::path& fil
     throw InputError({file.string()},
                      "a PNG of this size has more than 32767 pixels in a row: "
                      "ask for fewer dots per inch, or a .pdf or .svg");
-  Sheet sheet(file, page.width_m * scale, page.height_m * scale);
+  // A PNG's last column and row are whole, or paper would end within them.
+  const auto extent = [&](double metres) {
+    return pixels ? std::round(metres * scale) : metres * scale;
+  };
+  Sheet sheet(file, extent(page.width_m), extent(page.height_m));
   if (pixels) sheet.set_resolution(dpi);
   std::visit(Picture{sheet, scale * page.centre_m, scale}, shape);
   write_words(sheet, shape, page, scale);

@@ -3,8 +3,8 @@
 #include "support/process.hpp"
 #include "support/temp_dir.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -177,8 +177,8 @@ TEST_P(Printing, ADiscSeenByACameraHasItsRadius) {
   EXPECT_NEAR(found[0].ellipse.v, 239.5, 0.5);
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, Printing, testing::Values("png", "pdf", "svg"),
-                         [](const auto& info) { return std::string(info.param); });
+INSTANTIATE_TEST_SUITE_P(Formats, Printing, ::testing::Values("png", "pdf", "svg"),
+                         [](const auto& format) { return std::string(format.param); });
 
 TEST(Printable, APngSaysHowLargeItsPixelsAre) {
   const vigia::testing::TempDir dir;

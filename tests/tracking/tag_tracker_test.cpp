@@ -51,7 +51,8 @@ struct TagTracking : ::testing::Test {
     result.landmark = 1;
     int label = 0;
     for (const Eigen::Vector2d& corner : corners_of(hall.landmark(), view))
-      result.points.push_back({label++, corner + Eigen::Vector2d(5.0, -4.0), {}});
+      result.points.push_back(
+          {label++, corner + Eigen::Vector2d(5.0, -4.0), Eigen::Matrix2d::Identity()});
     result.covariance *= 16.0;
     return result;
   }
