@@ -48,8 +48,8 @@ std::optional<Corner> meet(const SideFit& a, const SideFit& b);
 
 /// The Cramér–Rao bound of the place of a fitted straight edge at its own end, along its normal:
 /// σ_n² = 4/(ρ L), ρ = (C/σ)²/(2√π s) the information per pixel of length; L the length, C the
-/// contrast, σ the noise, s the blur with the pixel's integration. At a right-angled corner each
-/// coordinate has this bound from one of the two sides.
+/// contrast, σ the noise, s the blur with the pixel's integration; levels and blur known. At a
+/// right-angled corner each coordinate has this bound from one of the two sides.
 double corner_bound(double length, double contrast, double noise, double blur);
 
 }  // namespace vigia::tracking
