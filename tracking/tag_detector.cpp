@@ -14,9 +14,11 @@ struct TagDetector::Library {
       apriltag_detector_create(), &apriltag_detector_destroy};
 };
 
-TagDetector::TagDetector(double quad_decimate) : library_(std::make_unique<Library>()) {
+TagDetector::TagDetector(double quad_decimate, int max_hamming)
+    : library_(std::make_unique<Library>()) {
   apriltag_detector_t& detector = *library_->detector;
-  apriltag_detector_add_family(&detector, library_->family.get());
+  // Its table of codes grows with the power of the bits that may be wrong.
+  apriltag_detector_add_family_bits(&detector, library_->family.get(), max_hamming);
   detector.nthreads = 1;
   detector.quad_decimate = static_cast<float>(quad_decimate);
   // The default of 5 takes noise for edges, which costs ten times the time.

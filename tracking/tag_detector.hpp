@@ -24,7 +24,7 @@ struct TagDetection {
 /// libapriltag for the family 36h11, on one thread.
 class TagDetector {
  public:
-  explicit TagDetector(double quad_decimate);
+  TagDetector(double quad_decimate, int max_hamming);
   ~TagDetector();
 
   std::vector<TagDetection> detect(vpImage<unsigned char>& image);

@@ -62,7 +62,9 @@ std::optional<std::array<Corner, 4>> refit(const vpImage<unsigned char>& image,
 class TagTracker::State {
  public:
   State(const KnownCodes& known, const TagTrackerParameters& parameters)
-      : known_(known), parameters_(parameters), detector_(parameters.quad_decimate) {}
+      : known_(known),
+        parameters_(parameters),
+        detector_(parameters.quad_decimate, parameters.max_hamming) {}
 
   PointsFeature acquire(const Frame& frame, const PointsPrediction& prediction) {
     expected_ = prediction.landmark;
@@ -82,9 +84,7 @@ class TagTracker::State {
     image_.resize(static_cast<unsigned>(window.height), static_cast<unsigned>(window.width));
     frame.read_grey(window, image_.bitmap, window.width);
     for (const TagDetection& tag : detector_.detect(image_)) {
-      if (tag.hamming > parameters_.max_hamming ||
-          tag.decision_margin < parameters_.min_decision_margin)
-        continue;
+      if (tag.decision_margin < parameters_.min_decision_margin) continue;
       features.push_back(feature_of(tag, {window.u, window.v}));
     }
     return features;

@@ -137,6 +137,7 @@ TEST(TagAccuracy, CornersLieWithinTwiceTheBoundAndKnowTheirErrors) {
   const LandmarkHall hall(TagShape{17, kSide},
                           "contrast: 0, clutter_per_m2: 0, disc_grey: 60, plate_grey: 210");
   RandomStream random(5, "tag accuracy");
+  TagTracker tracker;
   double squares = 0.0;
   double nees = 0.0;
   int count = 0;
@@ -145,7 +146,7 @@ TEST(TagAccuracy, CornersLieWithinTwiceTheBoundAndKnowTheirErrors) {
                                      {random.uniform(-20.0, 20.0), random.uniform(-20.0, 20.0)},
                                      0.0, random.uniform(0.05, 0.7));
     const auto frame = hall.scene().expose(view.wMc, view.intrinsics, {k}, sim::ImagingParams{});
-    const auto found = make_point_tracker("tag", {})->find_all(*frame);
+    const auto found = tracker.find_all(*frame);
     ASSERT_EQ(found.size(), 1U);
     ASSERT_EQ(found[0].status, FeatureStatus::found);
     const auto truth = corners_of(hall.landmark(), view);
