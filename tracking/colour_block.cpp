@@ -16,13 +16,16 @@ int weighted(const vpRGBa& pixel) {
 
 void ColourBlock::read(const imaging::Frame& frame, const imaging::Window& window) {
   window_ = window;
-  pixels_.resize(static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height));
+  const auto count =
+      static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height);
+  // Never smaller again: a vector that grows writes to its new pixels first.
+  if (pixels_.size() < count) pixels_.resize(count);
   frame.read_colour(window, pixels_.data(), window.width);
 }
 
 void ColourBlock::luma(vpImage<unsigned char>& out) const {
   out.resize(static_cast<unsigned>(window_.height), static_cast<unsigned>(window_.width));
-  for (std::size_t i = 0; i < pixels_.size(); ++i)
+  for (std::size_t i = 0; i < out.getSize(); ++i)
     out.bitmap[i] = static_cast<unsigned char>((weighted(pixels_[i]) + 128) >> 8);
 }
 

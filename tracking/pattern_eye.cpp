@@ -14,7 +14,6 @@ using imaging::Window;
 constexpr double kStartBlur = 0.8;      // px
 constexpr double kSmallDot = 2.0;       // px, least semi-minor axis of a blob
 constexpr double kFlattest = 0.25;      // b/a of a dot
-constexpr double kDotBox = 8.0;         // px round a dot that its fit may read
 constexpr int kRowStep = 3;             // rows from one that the blob finder scans to the next
 constexpr double kMaxGrowth = 0.3;      // of log size, of a dot against its prediction
 constexpr double kCentreMargin = 12.0;  // px by which the centre-point may jump between frames
@@ -138,7 +137,7 @@ std::optional<PlaneMap> PatternEye::fit_dots(const PatternCandidate& candidate, 
     blur = dots[i].blur;
     points.push_back({places[i], dots[i].shape.centre});
   }
-  const auto map = fit_plane_map(points);
+  auto map = fit_plane_map(points);
   if (!map) return std::nullopt;
   // Where the blob finder saw nothing, the plane says where to look.
   for (std::size_t i = 0; i < places.size(); ++i) {
