@@ -69,6 +69,7 @@ if(NOT TARGET PkgConfig::vigia_cairo)
   pkg_check_modules(vigia_cairo REQUIRED IMPORTED_TARGET GLOBAL cairo)
 endif()
 
+vigia_find(apriltag)
 vigia_find(nlohmann_json 3.11)
 vigia_find(fmt)
 vigia_find(spdlog 1.10)

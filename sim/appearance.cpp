@@ -47,11 +47,11 @@ Clutter read_clutter(MapReader& reader, const WorldMap& world) {
 }
 
 bool near_landmark(const Eigen::Vector3d& p, const WorldMap& world, double plate_factor) {
-  return std::any_of(world.landmarks.all().begin(), world.landmarks.all().end(),
-                     [&](const Landmark& landmark) {
-                       const double radius = disc_radius(landmark).value_or(0.1);
-                       return (p - landmark.centre_w()).norm() < 1.5 * plate_factor * radius + 0.25;
-                     });
+  return std::any_of(
+      world.landmarks.all().begin(), world.landmarks.all().end(), [&](const Landmark& landmark) {
+        const double sheet = (disc_radius(landmark) ? plate_factor : 1.0) * half_width(landmark);
+        return (p - landmark.centre_w()).norm() < 1.5 * sheet + 0.25;
+      });
 }
 
 Clutter random_mark(RandomStream& random) {
@@ -105,6 +105,8 @@ std::shared_ptr<const Appearance> read_appearance(MapReader& reader, const World
   appearance->seed = static_cast<std::uint64_t>(look.integer("seed", {0.0, 1e15}, 1));
   appearance->contrast = look.number("contrast", {0.0, 3.0}, appearance->contrast);
   appearance->light = look.number("light", {0.0, 10.0}, appearance->light);
+  appearance->light_kelvin =
+      look.number("light_kelvin", {1500.0, 20000.0}, appearance->light_kelvin);
   appearance->wall_grey = look.number("wall_grey", grey, appearance->wall_grey);
   appearance->floor_grey = look.number("floor_grey", grey, appearance->floor_grey);
   appearance->ceiling_grey = look.number("ceiling_grey", grey, appearance->ceiling_grey);

@@ -3,6 +3,7 @@
 #include "disc_coverage.hpp"
 #include "rays.hpp"
 #include "simd.hpp"
+#include "tag_coverage.hpp"
 
 #include <algorithm>
 #include <array>
@@ -22,6 +23,7 @@ using imaging::Window;
 double outline_radius(DecalShape shape) {
   switch (shape) {
     case DecalShape::square_plate:
+    case DecalShape::tag:
     case DecalShape::square:
       return std::sqrt(2.0);
     case DecalShape::blob:
@@ -233,6 +235,8 @@ void DecalView::compute_blurred() {
     const double a = 1.0 / size.singularValues()(1);
     const double b = 1.0 / size.singularValues()(0);
     blurred_ = conic_coverage(Q, *intrinsics_, window, b * b / a);
+  } else if (decal_->shape == DecalShape::tag) {
+    blurred_ = tag_coverage(decal_->fields, dHray_, *intrinsics_, window);
   } else {
     blurred_ = square_coverage(window);
   }

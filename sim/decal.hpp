@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include <Eigen/Core>
@@ -7,11 +8,12 @@
 
 #include "vigia/core/camera.hpp"
 #include "vigia/imaging/frame.hpp"
+#include "vigia/imaging/tag_bitmap.hpp"
 #include "vigia/sim/appearance.hpp"
 
 namespace vigia::sim {
 
-enum class DecalShape { disc, square_plate, blob, ellipse, ring, square, half_disc };
+enum class DecalShape { disc, square_plate, tag, blob, ellipse, ring, square, half_disc };
 
 /// Something painted flat on a surface, in frame d: z the surface's outward normal, size_m half its
 /// width.
@@ -20,8 +22,10 @@ struct Decal {
   Eigen::Isometry3d wMd = Eigen::Isometry3d::Identity();
   double size_m = 0.1;
   float grey = 60.0F;
-  bool blurred = false;     ///< exact coverage and optical blur: landmarks
-  std::size_t surface = 0;  ///< index of the surface that carries it
+  bool blurred = false;                         ///< exact coverage and optical blur: landmarks
+  std::size_t surface = 0;                      ///< index of the surface that carries it
+  std::array<float, 3> tint{1.0F, 1.0F, 1.0F};  ///< red, green, blue of grey 1; luma 1
+  imaging::TagBitmap fields{};                  ///< of a tag
 };
 
 /// A decal as one exposure sees it. coverage of a pixel is the share of grey that it takes.

@@ -3,6 +3,8 @@
 #include "blurred_frame.hpp"
 #include "body_view.hpp"
 #include "decal.hpp"
+#include "lamp.hpp"
+#include "landmark_decals.hpp"
 #include "light_rows.hpp"
 #include "pixel_noise.hpp"
 #include "rays.hpp"
@@ -26,6 +28,7 @@ using imaging::Window;
 
 constexpr int kTile = 16;
 constexpr ViewId kPerson = 0xfffe;  ///< the winner of a pixel that shows somebody
+constexpr int kGrey = -1;           ///< instead of a colour channel
 constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
 
 /// The first surface of @p surfaces among the faces that carries a picture of this frame.
@@ -118,13 +121,22 @@ struct Scene::Impl {
       if (mark.surface != kNowhere) decals.push_back(mark);
     }
     for (const Landmark& landmark : world.landmarks.all()) hang(landmark, look);
+    if (look.light_kelvin != Appearance{}.light_kelvin) shine(lamp_gains(look.light_kelvin));
   }
 
-  /// A landmark's sheet and disc, on the face under it or on a board of its own.
+  /// Gives everything the lamp's colour.
+  void shine(const std::array<float, 3>& gains) {
+    for (Surface& surface : surfaces) surface.material = lit(surface.material, gains);
+    for (Decal& decal : decals) {
+      const Ink shone = lit(Ink{decal.grey, decal.tint}, gains);
+      decal.grey = shone.grey;
+      decal.tint = shone.tint;
+    }
+  }
+
+  /// A landmark's sheet and picture, on the face under it or on a board of its own.
   void hang(const Landmark& landmark, const Appearance& look) {
-    const auto radius = disc_radius(landmark);
-    if (!radius) return;
-    const double half_width = *radius * look.plate_factor;
+    const double half_width = sheet_half_width(landmark, look);
     std::size_t under = face_under(surfaces, landmark.wMl, 0.02);
     if (under == kNowhere) {
       under = surfaces.size();
@@ -132,11 +144,10 @@ struct Scene::Impl {
           landmark.wMl, 1.1 * half_width,
           obstacle_material(look.obstacle_grey, look.contrast, derive_seed(look.seed, under))));
     }
-    const bool square = look.plate_shape == PlateShape::square;
-    decals.push_back({square ? DecalShape::square_plate : DecalShape::disc, landmark.wMl,
-                      half_width, static_cast<float>(look.plate_grey), true, under});
-    decals.push_back(
-        {DecalShape::disc, landmark.wMl, *radius, static_cast<float>(look.disc_grey), true, under});
+    for (Decal& decal : landmark_decals(landmark, look)) {
+      decal.surface = under;
+      decals.push_back(std::move(decal));
+    }
   }
 
   std::uint64_t seed;
@@ -178,7 +189,7 @@ class SceneFrame : public imaging::Frame, public Radiance {
 
   void read_grey(const Window& window, unsigned char* out, std::ptrdiff_t stride) const override {
     render(window, [&](int v, Row& row) {
-      paint_decals(window.u, v, window.width, row, row.grey.data());
+      paint_decals(window.u, v, window.width, row, kGrey, row.grey.data());
       shine(row, row.grey.data(), window.width);
       noise_.add_and_round(row.grey.data(), static_cast<float>(params_.noise_sigma), window.u, v, 0,
                            window.width, out + (v - window.v) * stride);
@@ -187,7 +198,7 @@ class SceneFrame : public imaging::Frame, public Radiance {
 
   void add_grey(const Window& window, std::vector<float>& sum) const override {
     render(window, [&](int v, Row& row) {
-      paint_decals(window.u, v, window.width, row, row.grey.data());
+      paint_decals(window.u, v, window.width, row, kGrey, row.grey.data());
       shine(row, row.grey.data(), window.width);
       add(row.grey.data(), window.width, row_of(sum, window, v));
     });
@@ -197,7 +208,7 @@ class SceneFrame : public imaging::Frame, public Radiance {
     std::vector<float> levels(static_cast<std::size_t>(window.width));
     render(window, [&](int v, Row& row) {
       tint(row, channel, levels);
-      paint_decals(window.u, v, window.width, row, levels.data());
+      paint_decals(window.u, v, window.width, row, params_.colour ? channel : kGrey, levels.data());
       shine(row, levels.data(), window.width);
       add(levels.data(), window.width, row_of(sum, window, v));
     });
@@ -211,7 +222,7 @@ class SceneFrame : public imaging::Frame, public Radiance {
       vpRGBa* pixels = out + (v - window.v) * stride;
       for (int c = 0; c < 3; ++c) {
         tint(row, c, channel);
-        paint_decals(window.u, v, window.width, row, channel.data());
+        paint_decals(window.u, v, window.width, row, params_.colour ? c : kGrey, channel.data());
         shine(row, channel.data(), window.width);
         noise_.add_and_round(channel.data(), static_cast<float>(params_.noise_sigma), window.u, v,
                              params_.colour ? c : 0, window.width, bytes.data());
@@ -378,7 +389,7 @@ class SceneFrame : public imaging::Frame, public Radiance {
     }
   }
 
-  void paint_decals(int u, int v, int count, Row& row, float* grey) const {
+  void paint_decals(int u, int v, int count, Row& row, int channel, float* grey) const {
     for (DecalView& decal : decals_) {
       const Window& box = decal.box();
       if (v < box.v || v >= box.bottom()) continue;
@@ -389,7 +400,9 @@ class SceneFrame : public imaging::Frame, public Radiance {
       const auto id = static_cast<ViewId>(view_of_surface_[decal.decal().surface]);
       decal.coverage(from, v, n, row.x.data() + at, row.y.data() + at, row.other.data() + at);
       keep_where(row.winner.data() + at, id, n, row.other.data() + at);
-      mix(row.other.data() + at, decal.decal().grey, n, grey + at);
+      const float tint =
+          channel == kGrey ? 1.0F : decal.decal().tint[static_cast<std::size_t>(channel)];
+      mix(row.other.data() + at, decal.decal().grey * tint, n, grey + at);
     }
   }
 

@@ -137,4 +137,16 @@ std::array<float, 8> gradient_sums(const JacobianColumns& columns, const float* 
   return out;
 }
 
+VIGIA_OUTLINE_LOOP
+void mix_channels(const unsigned char* __restrict rgba, const ChannelMixture& mixture, int count,
+                  unsigned char* __restrict out) {
+  const ChannelMixture m = mixture;
+  for (int i = 0; i < count; ++i) {
+    const int sum = m.red * rgba[4 * i] + m.green * rgba[4 * i + 1] + m.blue * rgba[4 * i + 2];
+    int value = (sum + m.offset) >> 12;
+    value = value > 0 ? value : 0;
+    out[i] = static_cast<unsigned char>(value < 255 ? value : 255);
+  }
+}
+
 }  // namespace vigia::tracking

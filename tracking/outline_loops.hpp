@@ -47,4 +47,13 @@ std::array<float, 36> normal_sums(const JacobianColumns& columns, int count);
 std::array<float, 8> gradient_sums(const JacobianColumns& columns, const float* residual,
                                    int count);
 
+/// A mixture of red, green and blue with its offset, in 4096ths.
+struct ChannelMixture {
+  int red, green, blue, offset;
+};
+
+/// out[i] = the mixture of pixel i of a row of R, G, B, A bytes, clamped to 0–255.
+void mix_channels(const unsigned char* rgba, const ChannelMixture& mixture, int count,
+                  unsigned char* out);
+
 }  // namespace vigia::tracking

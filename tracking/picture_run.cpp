@@ -1,8 +1,9 @@
 #include "vigia/tracking/picture_run.hpp"
 
+#include "csv_text.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include <opencv2/imgproc.hpp>
 
@@ -14,23 +15,6 @@
 
 namespace vigia::tracking {
 namespace {
-
-std::string number(double value, int digits) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
-}
-
-// RFC 4180: a field with a comma or quote is quoted.
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"') out += '"';
-    out += c;
-  }
-  return out + "\"";
-}
 
 // A light line on a wider dark one.
 struct Pen {
@@ -124,11 +108,11 @@ std::string picture_csv_line(const PictureRow& row) {
                      std::string(to_string(feature.status));
   if (feature.status != FeatureStatus::found) return line + std::string(12, ',');
   const Ellipse& e = feature.ellipse;
-  for (const double value : {e.u, e.v, e.a, e.b}) line += ',' + number(value, 4);
-  line += ',' + number(to_deg(e.psi), 3);
-  for (int i = 0; i < 4; ++i) line += ',' + number(std::sqrt(feature.covariance(i, i)), 4);
-  line += ',' + number(to_deg(std::sqrt(feature.covariance(4, 4))), 3);
-  return line + ',' + number(feature.score, 3) + ',' + number(feature.contrast, 1);
+  for (const double value : {e.u, e.v, e.a, e.b}) line += ',' + csv_number(value, 4);
+  line += ',' + csv_number(to_deg(e.psi), 3);
+  for (int i = 0; i < 4; ++i) line += ',' + csv_number(std::sqrt(feature.covariance(i, i)), 4);
+  line += ',' + csv_number(to_deg(std::sqrt(feature.covariance(4, 4))), 3);
+  return line + ',' + csv_number(feature.score, 3) + ',' + csv_number(feature.contrast, 1);
 }
 
 void draw_overlay(const PictureResult& result, vpImage<vpRGBa>& picture) {

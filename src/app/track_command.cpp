@@ -15,6 +15,7 @@
 #include "vigia/core/output_folder.hpp"
 #include "vigia/imaging/image_frame.hpp"
 #include "vigia/tracking/picture_run.hpp"
+#include "vigia/tracking/point_picture_run.hpp"
 
 namespace vigia::app {
 namespace {
@@ -53,6 +54,59 @@ std::vector<fs::path> pictures_in(const fs::path& folder) {
   return files;
 }
 
+/// One picture's part of the table and of the count.
+struct PictureOutcome {
+  std::string csv;
+  int found = 0;
+};
+
+/// Discs or landmarks of points, followed from picture to picture.
+class Pictures {
+ public:
+  explicit Pictures(const std::string& tracker) {
+    if (tracker == "pattern" || tracker == "tag")
+      points_.emplace(tracker);
+    else
+      discs_.emplace(tracker);
+  }
+
+  std::string header() const {
+    return discs_ ? tracking::picture_csv_header() : tracking::point_csv_header();
+  }
+  const char* things() const { return discs_ ? "discs" : "landmarks"; }
+
+  /// Draws into @p overlay unless it is null.
+  PictureOutcome next(const fs::path& name, const imaging::ImageFrame& picture,
+                      vpImage<vpRGBa>* overlay) {
+    return discs_ ? next_of(*discs_, name, picture, overlay)
+                  : next_of(*points_, name, picture, overlay);
+  }
+
+ private:
+  static std::string lines(const tracking::PointPictureResult& result) {
+    return tracking::point_csv_lines(result);
+  }
+  static std::string lines(const tracking::PictureResult& result) {
+    std::string text;
+    for (const auto& row : result.rows) text += tracking::picture_csv_line(row) + "\n";
+    return text;
+  }
+
+  template <typename Run>
+  static PictureOutcome next_of(Run& run, const fs::path& name, const imaging::ImageFrame& picture,
+                                vpImage<vpRGBa>* overlay) {
+    const auto result = run.next(name, picture);
+    if (overlay != nullptr) tracking::draw_overlay(result, *overlay);
+    const auto found = std::count_if(result.rows.begin(), result.rows.end(), [](const auto& row) {
+      return row.feature.status == tracking::FeatureStatus::found;
+    });
+    return {lines(result), static_cast<int>(found)};
+  }
+
+  std::optional<tracking::PictureRun> discs_;
+  std::optional<tracking::PointPictureRun> points_;
+};
+
 /// Runs the tracker and collects the table and, when asked for, the overlay pictures.
 class TrackRun {
  public:
@@ -63,15 +117,12 @@ class TrackRun {
   }
 
   void picture(const fs::path& name, const imaging::ImageFrame& picture) {
-    const auto result = run_.next(name, picture);
+    auto overlay = folder_ ? imaging::colour_image(picture) : vpImage<vpRGBa>();
+    const PictureOutcome outcome = run_.next(name, picture, folder_ ? &overlay : nullptr);
     ++pictures_;
-    for (const auto& row : result.rows) {
-      csv_ += tracking::picture_csv_line(row) + "\n";
-      if (row.feature.status == tracking::FeatureStatus::found) ++found_;
-    }
+    csv_ += outcome.csv;
+    found_ += outcome.found;
     if (!folder_) return;
-    auto overlay = imaging::colour_image(picture);
-    tracking::draw_overlay(result, overlay);
     imaging::write_png(folder_->staging() / "overlay" /
                            fmt::format("{:05}_{}.png", pictures_, name.stem().string()),
                        overlay);
@@ -94,19 +145,20 @@ class TrackRun {
 
   /// Writes what was collected; the table goes to stdout as well.
   void finish(bool quiet) {
-    const std::string table = tracking::picture_csv_header() + "\n" + csv_;
+    const std::string table = run_.header() + "\n" + csv_;
     fmt::print("{}", table);
     if (folder_) {
       folder_->add("track.csv", table);
       folder_->commit();
     }
-    if (!quiet) fmt::print(stderr, "{} discs found in {} pictures\n", found_, pictures_);
+    if (!quiet)
+      fmt::print(stderr, "{} {} found in {} pictures\n", found_, run_.things(), pictures_);
   }
 
   int found() const { return found_; }
 
  private:
-  tracking::PictureRun run_;
+  Pictures run_;
   std::optional<OutputFolder> folder_;
   std::string csv_;
   int pictures_ = 0;
@@ -134,8 +186,8 @@ int track(const TrackOptions& options) {
 void add_track(CLI::App& app, int& status) {
   auto options = std::make_shared<TrackOptions>();
   CLI::App* command = app.add_subcommand("track", "Run a tracker on real pictures or a video");
-  command->add_option("--tracker", options->tracker, "disc, ellipse or correlation")
-      ->check(CLI::IsMember({"disc", "ellipse", "correlation"}))
+  command->add_option("--tracker", options->tracker, "disc, ellipse, correlation, pattern or tag")
+      ->check(CLI::IsMember({"disc", "ellipse", "correlation", "pattern", "tag"}))
       ->capture_default_str();
   command->add_option("inputs", options->inputs, "Pictures, folders of pictures, or a video")
       ->required();

@@ -15,6 +15,15 @@ Eigen::Isometry3d wall_mount(const Eigen::Vector3d& centre_w, double normal_yaw)
   return wMl;
 }
 
+double half_width(const Landmark& landmark) {
+  struct HalfWidth {
+    double operator()(const DiscShape& disc) const { return disc.radius_m; }
+    double operator()(const PatternShape& pattern) const { return pattern.sheet_half_width_m; }
+    double operator()(const TagShape& tag) const { return tag.sheet_half_width_m(); }
+  };
+  return std::visit(HalfWidth{}, landmark.shape);
+}
+
 std::optional<double> disc_radius(const Landmark& landmark) {
   if (const auto* disc = std::get_if<DiscShape>(&landmark.shape)) return disc->radius_m;
   return std::nullopt;

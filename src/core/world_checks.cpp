@@ -21,6 +21,11 @@ std::string metres(double value) {
   return text + " m";
 }
 
+/// What hangs on the wall, for messages.
+std::string thing(const Landmark& landmark) {
+  return disc_radius(landmark) ? "the disc" : "the sheet";
+}
+
 /// The face that a landmark is mounted on: the nearest one that its normal is square to.
 const Wall* mounting_face(const PlacedLandmark& placed, const FloorPlan& plan) {
   const Eigen::Vector2d centre = placed.landmark.centre_w().head<2>();
@@ -37,7 +42,7 @@ const Wall* mounting_face(const PlacedLandmark& placed, const FloorPlan& plan) {
   return best;
 }
 
-/// Whether a point just in front of the disc lies in the room and outside every solid.
+/// Whether a point just in front of the landmark lies in the room and outside every solid.
 bool looks_into_the_open(const PlacedLandmark& placed, const FloorPlan& plan) {
   const Eigen::Vector2d ahead =
       (placed.landmark.centre_w() + 2.0 * kMountedWithin * placed.landmark.normal_w()).head<2>();
@@ -47,7 +52,7 @@ bool looks_into_the_open(const PlacedLandmark& placed, const FloorPlan& plan) {
   });
 }
 
-/// Whether a wall stands between the disc and a point just in front of it.
+/// Whether a wall stands between the landmark and a point just in front of it.
 bool lies_behind(const PlacedLandmark& placed, const Wall& face) {
   const Eigen::Vector2d normal = placed.landmark.normal_w().head<2>();
   return (placed.landmark.centre_w().head<2>() - face.a).dot(normal) < -1e-3 - kSlack;
@@ -64,24 +69,60 @@ void check_in_room(const PlacedLandmark& placed, const FloorPlan& plan) {
         distance_to_outline(spot, solid.polygon) > kMountedWithin)
       throw placed.reader.error("centre_m", "the landmark lies inside an obstacle");
   }
-  const double radius = disc_radius(placed.landmark).value_or(0.0);
-  if (centre.z() - radius < -kSlack)
-    throw placed.reader.error("centre_m", "the disc reaches below the floor");
-  if (centre.z() + radius > plan.ceiling_m() + kSlack)
-    throw placed.reader.error("centre_m",
-                              "the disc reaches above the ceiling at " + metres(plan.ceiling_m()));
+  const double reach = half_width(placed.landmark);
+  if (centre.z() - reach < -kSlack)
+    throw placed.reader.error("centre_m", thing(placed.landmark) + " reaches below the floor");
+  if (centre.z() + reach > plan.ceiling_m() + kSlack)
+    throw placed.reader.error(
+        "centre_m",
+        thing(placed.landmark) + " reaches above the ceiling at " + metres(plan.ceiling_m()));
 }
 
 void check_fits(const PlacedLandmark& placed, const Wall& face) {
-  const double radius = disc_radius(placed.landmark).value_or(0.0);
-  if (placed.landmark.centre_w().z() + radius > face.height_m + kSlack)
-    throw placed.reader.error("centre_m", "the disc sticks out above its wall, which is " +
+  const double reach = half_width(placed.landmark);
+  if (placed.landmark.centre_w().z() + reach > face.height_m + kSlack)
+    throw placed.reader.error("centre_m", thing(placed.landmark) +
+                                              " sticks out above its wall, which is " +
                                               metres(face.height_m) + " high");
   const Eigen::Vector2d along = face.b - face.a;
   const double s = (placed.landmark.centre_w().head<2>() - face.a).dot(along.normalized());
-  if (s < radius - kSlack || s > along.norm() - radius + kSlack)
-    throw placed.reader.error("centre_m", "the disc sticks out at the side of its wall, which is " +
+  if (s < reach - kSlack || s > along.norm() - reach + kSlack)
+    throw placed.reader.error("centre_m", thing(placed.landmark) +
+                                              " sticks out at the side of its wall, which is " +
                                               metres(along.norm()) + " long");
+}
+
+/// Whether two landmarks on one side of one wall take the same place: discs and upright squares,
+/// @p offset apart in the plane of the first.
+bool footprints_meet(const Landmark& a, const Landmark& b, const Eigen::Vector2d& offset) {
+  const double reach_a = half_width(a);
+  const double reach_b = half_width(b);
+  const bool round_a = disc_radius(a).has_value();
+  const bool round_b = disc_radius(b).has_value();
+  if (round_a && round_b) return offset.norm() < reach_a + reach_b;
+  const Eigen::Array2d apart = offset.array().abs();
+  if (!round_a && !round_b) return (apart < reach_a + reach_b).all();
+  const double square = round_a ? reach_b : reach_a;
+  const double radius = round_a ? reach_a : reach_b;
+  return (apart - square).max(0.0).matrix().norm() < radius;
+}
+
+bool overlap(const Landmark& a, const Landmark& b) {
+  if (a.normal_w().dot(b.normal_w()) <= 0.0) return false;
+  const Eigen::Vector3d offset_a = a.wMl.inverse(Eigen::Isometry) * b.centre_w();
+  return std::abs(offset_a.z()) < half_width(a) + half_width(b) &&
+         footprints_meet(a, b, offset_a.head<2>());
+}
+
+/// The key of the number that two landmarks share though it must tell them apart, or nothing.
+const char* shared_code(const Landmark& a, const Landmark& b) {
+  const auto* pattern_a = std::get_if<PatternShape>(&a.shape);
+  const auto* pattern_b = std::get_if<PatternShape>(&b.shape);
+  if (pattern_a != nullptr && pattern_b != nullptr && pattern_a->code == pattern_b->code)
+    return "pattern";
+  const auto* tag_a = std::get_if<TagShape>(&a.shape);
+  const auto* tag_b = std::get_if<TagShape>(&b.shape);
+  return tag_a != nullptr && tag_b != nullptr && tag_a->tag == tag_b->tag ? "tag" : nullptr;
 }
 
 }  // namespace
@@ -148,11 +189,10 @@ void check_against_earlier(const std::vector<PlacedLandmark>& placed) {
       throw last.reader.error("id", "the id " + std::to_string(last.landmark.id) +
                                         " occurs twice; it was given before at " +
                                         to_string(other->reader.where("id")));
-    const Eigen::Vector3d apart = last.landmark.centre_w() - other->landmark.centre_w();
-    const double radii =
-        disc_radius(last.landmark).value_or(0.0) + disc_radius(other->landmark).value_or(0.0);
-    const bool same_side = last.landmark.normal_w().dot(other->landmark.normal_w()) > 0.0;
-    if (same_side && apart.norm() < radii)
+    if (const char* key = shared_code(last.landmark, other->landmark))
+      throw last.reader.error(
+          key, "landmark " + std::to_string(other->landmark.id) + " shows the same code");
+    if (overlap(last.landmark, other->landmark))
       throw last.reader.error(
           "centre_m", "the landmark overlaps landmark " + std::to_string(other->landmark.id));
   }

@@ -1,8 +1,7 @@
 #include "vigia/core/world_map.hpp"
 
+#include "read_landmark.hpp"
 #include "world_checks.hpp"
-
-#include "vigia/core/angle.hpp"
 
 namespace vigia {
 namespace {
@@ -57,20 +56,6 @@ Obstacle read_obstacle(MapReader reader, const Room& room) {
     check_segment_in_room(obstacle.polygon[i], obstacle.polygon[(i + 1) % obstacle.polygon.size()],
                           room.outline, reader, "polygon_m");
   return obstacle;
-}
-
-PlacedLandmark read_landmark(MapReader reader) {
-  PlacedLandmark placed{{}, 0.0, false, reader};
-  placed.landmark.id = static_cast<LandmarkId>(reader.integer("id", {0.0, 1e6}));
-  reader.choice("kind", {"disc"});
-  const Eigen::Vector3d centre_w = reader.vector3("centre_m", kCoordinate);
-  placed.normal_yaw = from_deg(reader.number("normal_deg", {-360.0, 360.0}));
-  placed.landmark.wMl = wall_mount(centre_w, placed.normal_yaw);
-  placed.landmark.shape = DiscShape{reader.number("radius_m", {0.005, 2.0})};
-  placed.free_standing = reader.boolean("free_standing", false);
-  reader.finish();
-  placed.reader = reader;
-  return placed;
 }
 
 }  // namespace

@@ -22,9 +22,11 @@ namespace {
 template <typename Pixel>
 void copy_window(const vpImage<Pixel>& image, const Window& window, Pixel* out,
                  std::ptrdiff_t stride) {
+  // vpRGBa copies pixel by pixel; its four bytes are all that it has.
+  const std::size_t bytes = sizeof(Pixel) * static_cast<std::size_t>(window.width);
   for (int row = 0; row < window.height; ++row)
-    std::copy_n(image[static_cast<unsigned>(window.v + row)] + window.u, window.width,
-                out + row * stride);
+    std::memcpy(static_cast<void*>(out + row * stride),
+                image[static_cast<unsigned>(window.v + row)] + window.u, bytes);
 }
 
 constexpr std::string_view kPngMagic("\x89PNG\r\n\x1a\n", 8);

@@ -1,5 +1,7 @@
 #include "sheet.hpp"
 
+#include "png_resolution.hpp"
+
 #include <cmath>
 #include <map>
 
@@ -13,7 +15,7 @@ namespace vigia::report {
 namespace {
 
 // Points of a vector page per unit: 1600 units become a page about as wide as A4 across.
-constexpr double kPointsPerUnit = 0.5;
+constexpr double kPointsPerUnit = 72.0 / kVectorUnitsPerInch;
 
 cairo_status_t append(void* bytes, const unsigned char* data, unsigned length) {
   static_cast<std::string*>(bytes)->append(reinterpret_cast<const char*>(data), length);
@@ -195,7 +197,10 @@ void Sheet::save() {
   if (status != CAIRO_STATUS_SUCCESS)
     throw InputError({file_.string()},
                      std::string("the picture can't be drawn: ") + cairo_status_to_string(status));
-  write_file(file_, file_.extension() == ".svg" ? renumber_groups(*bytes_) : *bytes_);
+  if (file_.extension() == ".svg") *bytes_ = renumber_groups(*bytes_);
+  if (file_.extension() == ".png" && dots_per_inch_ > 0.0)
+    *bytes_ = with_resolution(*bytes_, dots_per_inch_);
+  write_file(file_, *bytes_);
 }
 
 }  // namespace vigia::report

@@ -40,6 +40,9 @@ struct Stroke {
   std::vector<double> dashes = {};
 };
 
+/// Units of a sheet in an inch of an SVG or PDF page.
+inline constexpr double kVectorUnitsPerInch = 144.0;
+
 /// A drawing surface in units of a PNG's pixels, with what the figures are made of.
 class Sheet {
  public:
@@ -72,6 +75,9 @@ class Sheet {
   void outlined_text(const std::string& text, const Eigen::Vector2d& at, const Font& font,
                      Colour colour, Colour halo, double halo_width, TextAnchor anchor = {}) const;
 
+  /// Writes into a PNG how large its pixels are.
+  void set_resolution(double dots_per_inch) { dots_per_inch_ = dots_per_inch; }
+
   /// Finishes the drawing and writes it aside, then renames it to the file given at construction.
   /// Throws InputError when that fails.
   void save();
@@ -85,6 +91,7 @@ class Sheet {
                            TextAnchor anchor) const;
 
   std::filesystem::path file_;
+  double dots_per_inch_ = 0.0;  // 0: not said
   // Cairo writes to it while the surface lives, so it is declared before the surface.
   std::unique_ptr<std::string> bytes_ = std::make_unique<std::string>();
   Surface surface_{nullptr, &cairo_surface_destroy};

@@ -214,8 +214,8 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{
             std::string(kRoom) +
                 "  - {id: 1, kind: disk, centre_m: [0, 3, 1.5], normal_deg: 0, radius_m: 0.1}\n",
-            "w.yaml:6:19: landmarks[0].kind: found 'disk', must be one of disc; did you mean "
-            "'disc'?"},
+            "w.yaml:6:19: landmarks[0].kind: found 'disk', must be one of disc, pattern, tag; did "
+            "you mean 'disc'?"},
         Mistake{
             std::string(kRoom) +
                 "  - {id: 1, kind: disc, centre_m: [0, 3, 1.5], normal_deg: 0, radius_m: 0.1}\n"
@@ -232,6 +232,77 @@ INSTANTIATE_TEST_SUITE_P(
                     "colour: red}\n",
                 "w.yaml:6:78: unknown key 'colour' in landmarks[0] (known: centre_m, "
                 "free_standing, id, kind, normal_deg, radius_m)"}));
+
+TEST(WorldMap, HoldsPatternsAndTags) {
+  const WorldMap world = read_world(
+      std::string(kRoom) +
+      "  - {id: 1, kind: pattern, centre_m: [0, 3, 2.15], normal_deg: 0, floor: 2, room: 40,\n"
+      "     pattern: 5, inner_radius_m: 0.07}\n"
+      "  - {id: 2, kind: tag, centre_m: [0, 2, 1.5], normal_deg: 0, tag: 586, side_m: 0.2}\n");
+  const auto& pattern = std::get<PatternShape>(world.landmarks.find(1)->shape);
+  EXPECT_EQ(pattern.code, (PatternCode{2, 40, 5}));
+  EXPECT_EQ(pattern.inner_radius_m, 0.07);
+  EXPECT_EQ(pattern.outer_radius_m, PatternShape{}.outer_radius_m);
+  EXPECT_EQ(half_width(*world.landmarks.find(1)), 0.15);
+  EXPECT_EQ(std::get<TagShape>(world.landmarks.find(2)->shape).tag, 586);
+  EXPECT_NEAR(half_width(*world.landmarks.find(2)), 0.15, 1e-12);
+}
+
+TEST(WorldMap, SheetsAndDiscsMayTouchAtTheirTrueExtent) {
+  // The disc lies beyond the corner of the sheet: nearer than half widths added, yet apart.
+  const WorldMap world = read_world(
+      std::string(kRoom) +
+      "  - {id: 1, kind: pattern, centre_m: [0, 3, 1.5], normal_deg: 0, floor: 0, room: 0,\n"
+      "     pattern: 0}\n"
+      "  - {id: 2, kind: disc, centre_m: [0, 3.23, 1.73], normal_deg: 0, radius_m: 0.1}\n"
+      "  - {id: 3, kind: tag, centre_m: [0, 2.699, 1.5], normal_deg: 0, tag: 0, side_m: 0.2}\n");
+  EXPECT_EQ(world.landmarks.all().size(), 3U);
+}
+
+Mistake pattern(const std::string& centre, const std::string& keys, const std::string& message) {
+  return {std::string(kRoom) + "  - {id: 1, kind: pattern, centre_m: " + centre +
+              ", normal_deg: 0,\n     floor: 1, room: 2" + keys + "}\n",
+          "w.yaml:" + message};
+}
+
+Mistake pair(const std::string& first, const std::string& second, const std::string& message) {
+  return {std::string(kRoom) + "  - {id: 1, centre_m: [0, 3, 1.5], normal_deg: 0, " + first +
+              "}\n  - {id: 2, normal_deg: 0, " + second + "}\n",
+          "w.yaml:7:" + message};
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OfAPatternOrTag, WorldMistake,
+    testing::Values(
+        pattern("[0, 3, 1.5]", "", "6:5: landmarks[0].pattern: the key is missing"),
+        pattern("[0, 3, 1.5]", ", pattern: 9",
+                "7:34: landmarks[0].pattern: found '9', must lie in [0, 8]"),
+        pattern("[0, 3, 1.5]", ", pattern: 1, outer_radius_m: 0.09",
+                "7:53: landmarks[0].outer_radius_m: the outer ring's dots touch the inner ring's"),
+        pattern("[0, 3, 1.5]", ", pattern: 1, sheet_half_width_m: 0.12",
+                "7:57: landmarks[0].sheet_half_width_m: the outer ring's dots reach over the "
+                "sheet's edge"),
+        pattern("[0, 3, 2.9]", ", pattern: 1",
+                "6:38: landmarks[0].centre_m: the sheet reaches above the ceiling at 3.000 m"),
+        pattern("[0, 3, 0.1]", ", pattern: 1",
+                "6:38: landmarks[0].centre_m: the sheet reaches below the floor"),
+        pattern("[0, 5.9, 1.5]", ", pattern: 1",
+                "6:38: landmarks[0].centre_m: the sheet sticks out at the side of its wall, which "
+                "is 6.000 m long"),
+        pair("kind: tag, tag: 7, side_m: 0.2",
+             "centre_m: [0, 2.71, 1.6], kind: tag, tag: 8, side_m: 0.2",
+             "38: landmarks[1].centre_m: the landmark overlaps landmark 1"),
+        pair("kind: tag, tag: 7, side_m: 0.2",
+             "centre_m: [0, 1, 1.6], kind: tag, tag: 7, side_m: 1",
+             "67: landmarks[1].tag: landmark 1 shows the same code"),
+        pair("kind: tag, tag: 7, side_m: 0.2",
+             "centre_m: [0, 1, 1.6], kind: tag, tag: 587, side_m: 1",
+             "67: landmarks[1].tag: found '587', must lie in [0, 586]"),
+        pair("kind: disc, radius_m: 0.1", "centre_m: [0, 3.2, 1.6], kind: tag, tag: 7, side_m: 0.2",
+             "38: landmarks[1].centre_m: the landmark overlaps landmark 1"),
+        pair("kind: pattern, floor: 1, room: 2, pattern: 3",
+             "centre_m: [0, 1, 1.5], kind: pattern, floor: 1, room: 2, pattern: 3",
+             "94: landmarks[1].pattern: landmark 1 shows the same code")));
 
 /// Whether the camera of a robot at @p eye sees a landmark well enough for Armingol's Table 1.
 bool sees(const WorldMap& world, const Landmark& landmark, const Eigen::Vector3d& eye) {

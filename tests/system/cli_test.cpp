@@ -152,6 +152,45 @@ TEST_F(Program, TracksTheThirtySixCirclesOfAPicture) {
   EXPECT_TRUE(fs::exists(dir_.path() / "tracks/overlay/00001_grid36-01.png"));
 }
 
+TEST_F(Program, TracksTheTagsOfAPicture) {
+  const std::string file = kPictures + "/AprilTag/benchmark/640x480/tag36_11_640x480.png";
+  if (!fs::exists(file)) GTEST_SKIP() << "visp-images-data is not installed";
+  const auto result =
+      vigia("track --tracker tag " + file + " --quiet --out " + (dir_.path() / "tags").string());
+  EXPECT_EQ(result.status, 0) << result.err;
+  // Five tags of four corners, and the header.
+  EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 21);
+  EXPECT_EQ(vigia::testing::read_text(dir_.path() / "tags/track.csv"), result.out);
+}
+
+TEST_F(Program, PrintsAPatternAndReadsItBack) {
+  const auto print = dir_.path() / "pattern.png";
+  const auto printed =
+      vigia("landmark pattern --floor 7 --room 42 --pattern 5 --dpi 60 -o " + print.string());
+  EXPECT_EQ(printed.status, 0) << printed.err;
+  EXPECT_EQ(printed.out, "");
+  const auto result = vigia("track --tracker pattern " + print.string());
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("found,7-42-5"));
+}
+
+TEST_F(Program, SaysWhichLandmarksThereAre) {
+  const std::string out = " -o " + (dir_.path() / "x.pdf").string();
+  for (const auto& [command, message] :
+       {std::pair{"pattern --floor 12 --room 0 --pattern 0", "--floor 12: floors are 0–11"},
+        {"pattern --floor 0 --room -1 --pattern 0", "--room -1: rooms are 0–80"},
+        {"tag --id 587", "--id 587: tags of this family are 0–586"},
+        {"tag --id 5 --side-m 0", "--side-m 0: must lie in [0.01, 1]"},
+        {"disc --radius-m 3", "--radius-m 3: must lie in [0.005, 1]"},
+        {"disc --dpi 1", "--dpi 1: must lie in [36, 2400]"}}) {
+    const auto result = vigia(std::string("landmark ") + command + out);
+    EXPECT_EQ(result.status, 2) << command;
+    EXPECT_THAT(result.err, HasSubstr(message));
+  }
+  EXPECT_EQ(vigia("landmark tag --id 5 -o " + (dir_.path() / "x.doc").string()).status, 2);
+  EXPECT_FALSE(fs::exists(dir_.path() / "x.pdf"));
+}
+
 TEST_F(Program, RejectsATruncatedPictureAndLeavesNoFolder) {
   if (!fs::exists(kPictures)) GTEST_SKIP() << "visp-images-data is not installed";
   const std::string whole = vigia::testing::read_text(kPictures + "/calibration/grid36-01.pgm");

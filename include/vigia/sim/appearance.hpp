@@ -27,9 +27,10 @@ enum class PlateShape { square, disc };
 
 /// Looks of the building. Grey levels are before the light's gain.
 struct Appearance {
-  std::uint64_t seed = 1;  ///< of textures and random clutter: the world's, not the mission's
-  double contrast = 1.0;   ///< of every texture; 0 leaves plain surfaces
-  double light = 1.0;      ///< gain of the whole picture
+  std::uint64_t seed = 1;        ///< of textures and random clutter: the world's, not the mission's
+  double contrast = 1.0;         ///< of every texture; 0 leaves plain surfaces
+  double light = 1.0;            ///< gain of the whole picture
+  double light_kelvin = 6500.0;  ///< colour of the lamp; the camera is white at 6500 K
   double wall_grey = 150.0;
   double floor_grey = 105.0;
   double ceiling_grey = 190.0;

@@ -18,7 +18,7 @@ namespace vigia::sim {
 /// How the camera turns light into grey levels.
 struct ImagingParams {
   double noise_sigma = 4.0;  ///< grey levels, Gaussian, independent per pixel and frame
-  double blur_px = 0.7;      ///< σ of the optical blur at the discs' outlines
+  double blur_px = 0.7;      ///< σ of the optical blur at the landmarks' outlines
   bool colour = false;       ///< whether frames carry colour (grey frames are cheaper)
 };
 
@@ -26,8 +26,8 @@ struct ImagingParams {
 // Read from the world file; see vigia/sim/appearance.hpp.
 struct Appearance;
 
-/// The true world as a camera sees it: walls, floor, ceiling and obstacles with texture, discs on
-/// light plates, clutter.
+/// The true world as a camera sees it: walls, floor, ceiling and obstacles with texture, discs,
+/// patterns and tags on light sheets, clutter.
 class Scene {
  public:
   Scene(const WorldMap& world, const std::shared_ptr<const Appearance>& appearance,

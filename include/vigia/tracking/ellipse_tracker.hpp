@@ -9,20 +9,9 @@
 
 #include "vigia/core/observation.hpp"
 #include "vigia/imaging/canvas.hpp"
+#include "vigia/tracking/feature_status.hpp"
 
 namespace vigia::tracking {
-
-/// What became of a frame. Everything but found means: no measurement.
-enum class FeatureStatus {
-  found,
-  not_found,      ///< nothing like a disc where it was looked for
-  occluded,       ///< a disc, but part of its outline is hidden
-  cut_by_border,  ///< a disc that the image's border cuts
-  wrong_object,   ///< a blob that is no disc, or not the predicted one
-  low_contrast,   ///< too faint for the noise
-};
-
-std::string_view to_string(FeatureStatus status);
 
 /// An ellipse measured in one frame.
 struct EllipseFeature {

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <variant>
+
+#include <Eigen/Core>
+
+#include "vigia/core/landmark.hpp"
+
+namespace vigia::report {
+
+using LandmarkShape = std::variant<DiscShape, PatternShape, TagShape>;
+
+/// A page with a landmark at true scale, metres: the landmark's sheet at the top, below it what the
+/// landmark is, in words, and a bar to check the scale of the print.
+struct PrintedPage {
+  double width_m = 0.0;
+  double height_m = 0.0;
+  Eigen::Vector2d centre_m = Eigen::Vector2d::Zero();  ///< of the landmark, from the upper left
+  double half_width_m = 0.0;                           ///< of the landmark's sheet
+};
+PrintedPage printed_page(const LandmarkShape& shape);
+
+/// Prints a landmark to a .svg, .pdf or .png file. A PNG has @p dpi pixels an inch and says so.
+/// Throws InputError for another ending, for a PNG that is too large, and when the file cannot be
+/// written; std::invalid_argument for a code or tag outside its range.
+void print_landmark(const LandmarkShape& shape, const std::filesystem::path& file,
+                    double dpi = 300.0);
+
+}  // namespace vigia::report

@@ -1,0 +1,97 @@
+#include "commands.hpp"
+
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "vigia/core/error.hpp"
+#include "vigia/report/printable.hpp"
+
+namespace vigia::app {
+namespace {
+
+struct LandmarkOptions {
+  PatternShape pattern;
+  TagShape tag;
+  DiscShape disc;
+  std::string out;
+  double dpi = 300.0;
+};
+
+void check_number(const char* option, int value, int count, const char* things) {
+  if (value < 0 || value >= count)
+    throw InputError(fmt::format("{} {}: {} are 0–{}", option, value, things, count - 1));
+}
+
+void check_metres(const char* option, double value, double low, double high) {
+  if (!(value >= low && value <= high))
+    throw InputError(fmt::format("{} {}: must lie in [{}, {}]", option, value, low, high));
+}
+
+int print(const report::LandmarkShape& shape, const LandmarkOptions& options) {
+  check_metres("--dpi", options.dpi, 36.0, 2400.0);
+  report::print_landmark(shape, options.out, options.dpi);
+  const report::PrintedPage page = report::printed_page(shape);
+  fmt::print(stderr, "{}: {:.0f} × {:.0f} mm\n", options.out, 1e3 * page.width_m,
+             1e3 * page.height_m);
+  return 0;
+}
+
+CLI::App* add_kind(CLI::App& command, const char* name, const char* what,
+                   const std::shared_ptr<LandmarkOptions>& options) {
+  CLI::App* kind = command.add_subcommand(name, what);
+  kind->add_option("-o,--out", options->out, "A .pdf, .svg or .png file")->required();
+  kind->add_option("--dpi", options->dpi, "Pixels per inch of a .png")->capture_default_str();
+  return kind;
+}
+
+void add_disc(CLI::App& command, const std::shared_ptr<LandmarkOptions>& options, int& status) {
+  CLI::App* kind = add_kind(command, "disc", "A dark disc", options);
+  kind->add_option("--radius-m", options->disc.radius_m, "Radius, m")->capture_default_str();
+  kind->callback([options, &status] {
+    check_metres("--radius-m", options->disc.radius_m, 0.005, 1.0);
+    status = print(options->disc, *options);
+  });
+}
+
+void add_pattern(CLI::App& command, const std::shared_ptr<LandmarkOptions>& options, int& status) {
+  CLI::App* kind = add_kind(command, "pattern", "A colour pattern that says its place", options);
+  PatternCode& code = options->pattern.code;
+  kind->add_option("--floor", code.floor, "0–11")->required();
+  kind->add_option("--room", code.room, "0–80")->required();
+  kind->add_option("--pattern", code.pattern, "0–8")->required();
+  kind->callback([options, &status] {
+    const PatternCode& asked = options->pattern.code;
+    check_number("--floor", asked.floor, kFloors, "floors");
+    check_number("--room", asked.room, kRooms, "rooms");
+    check_number("--pattern", asked.pattern, kPatterns, "patterns");
+    status = print(options->pattern, *options);
+  });
+}
+
+void add_tag(CLI::App& command, const std::shared_ptr<LandmarkOptions>& options, int& status) {
+  CLI::App* kind = add_kind(command, "tag", "An AprilTag of the family 36h11", options);
+  kind->add_option("--id", options->tag.tag, "0–586")->required();
+  kind->add_option("--side-m", options->tag.side_m, "Side of the black square, m")
+      ->capture_default_str();
+  kind->callback([options, &status] {
+    check_number("--id", options->tag.tag, kTags, "tags of this family");
+    check_metres("--side-m", options->tag.side_m, 0.01, 1.0);
+    status = print(options->tag, *options);
+  });
+}
+
+}  // namespace
+
+void add_landmark(CLI::App& app, int& status) {
+  auto options = std::make_shared<LandmarkOptions>();
+  CLI::App* command =
+      app.add_subcommand("landmark", "Print a landmark at true scale, as PDF, SVG or PNG");
+  command->require_subcommand(1);
+  add_disc(*command, options, status);
+  add_pattern(*command, options, status);
+  add_tag(*command, options, status);
+}
+
+}  // namespace vigia::app

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+
+namespace vigia::report {
+
+/// The PNG @p png with the size of its pixels (a pHYs chunk after the header), which Cairo leaves
+/// out.
+std::string with_resolution(const std::string& png, double dots_per_inch);
+
+}  // namespace vigia::report

@@ -1,0 +1,308 @@
+#include "pattern_eye.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+namespace vigia::tracking {
+namespace {
+
+using imaging::Frame;
+using imaging::Window;
+
+constexpr double kStartBlur = 0.8;      // px
+constexpr double kSmallDot = 2.0;       // px, least semi-minor axis of a blob
+constexpr double kFlattest = 0.25;      // b/a of a dot
+constexpr int kRowStep = 3;             // rows from one that the blob finder scans to the next
+constexpr double kMaxGrowth = 0.3;      // of log size, of a dot against its prediction
+constexpr double kCentreMargin = 12.0;  // px by which the centre-point may jump between frames
+constexpr int kEnoughNear = 4;          // dots that betray a hidden pattern
+
+bool same_geometry(const PatternShape& a, const PatternShape& b) {
+  return a.outer_radius_m == b.outer_radius_m && a.inner_radius_m == b.inner_radius_m &&
+         a.dot_radius_m == b.dot_radius_m && a.centre_radius_m == b.centre_radius_m;
+}
+
+std::vector<PatternShape> geometries_of(const KnownCodes& known) {
+  std::vector<PatternShape> geometries;
+  if (known.any) geometries.emplace_back();
+  for (const Landmark& landmark : known.map.all()) {
+    const auto* pattern = std::get_if<PatternShape>(&landmark.shape);
+    if (pattern == nullptr) continue;
+    const bool seen = std::any_of(geometries.begin(), geometries.end(), [&](const auto& other) {
+      return same_geometry(other, *pattern);
+    });
+    if (!seen) geometries.push_back(*pattern);
+  }
+  return geometries;
+}
+
+BlobFinderParameters finder_parameters(double min_contrast) {
+  BlobFinderParameters parameters;
+  parameters.min_axis_px = kSmallDot;
+  parameters.min_axis_ratio = kFlattest;
+  parameters.min_contrast = min_contrast;
+  parameters.row_step = kRowStep;
+  return parameters;
+}
+
+double size_of(const EllipseShape& shape) {
+  return std::sqrt(std::sqrt(shape.sigma.determinant()));
+}
+
+bool cut_by(const Window& frame, const EllipseShape& shape) {
+  return !contains(frame, window_round(shape, 1.0));
+}
+
+/// The window grown so that it begins on the full frame's grid of halved pixels and scanned rows:
+/// in a window the same is found as in the full frame.
+Window on_grid(const Window& window, const Window& frame) {
+  constexpr int kGrid = 2 * kRowStep;
+  const int u = window.u / kGrid * kGrid;
+  const int v = window.v / kGrid * kGrid;
+  return intersect({u, v, window.right() + 1 - u, window.bottom() + 1 - v}, frame);
+}
+
+/// The landmark of the map that shows a code with this geometry.
+const Landmark* find_code(const LandmarkMap& map, const PatternShape& shape) {
+  for (const Landmark& landmark : map.all()) {
+    const auto* pattern = std::get_if<PatternShape>(&landmark.shape);
+    if (pattern != nullptr && pattern->code == shape.code && same_geometry(*pattern, shape))
+      return &landmark;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+PatternEye::PatternEye(const KnownCodes& known, const PatternTrackerParameters& parameters)
+    : known_(known),
+      parameters_(parameters),
+      assembly_(geometries_of(known)),
+      finder_(finder_parameters(parameters.min_contrast)),
+      fitter_(parameters.min_agreement) {}
+
+// Blobs of the block, in coordinates of the frame.
+void PatternEye::detect(bool halved) {
+  if (halved)
+    block_.halved_luma(luma_);
+  else
+    block_.luma(luma_);
+  const Window whole{0, 0, static_cast<int>(luma_.getWidth()), static_cast<int>(luma_.getHeight())};
+  blobs_ = finder_.find(luma_, whole);
+  const double scale = halved ? 2.0 : 1.0;
+  const Eigen::Vector2d origin(block_.window().u, block_.window().v);
+  for (Blob& blob : blobs_) {
+    blob.ellipse.centre =
+        scale * blob.ellipse.centre + origin + Eigen::Vector2d::Constant(0.5 * (scale - 1.0));
+    blob.ellipse.sigma *= scale * scale;
+  }
+}
+
+std::vector<PatternSight> PatternEye::find(const Frame& frame, const Window& window) {
+  std::vector<PatternSight> sights;
+  block_.read(frame, on_grid(window, frame.full()));
+  // The halved picture shows large dots through the noise; small ones need all pixels.
+  for (const bool halved : {true, false}) {
+    if (std::min(window.width, window.height) < 16) continue;
+    detect(halved);
+    for (const PatternCandidate& candidate : assembly_.find(blobs_))
+      sights.push_back(measure(candidate, frame.full()));
+    if (!sights.empty()) break;
+  }
+  return sights;
+}
+
+// Whether a fitted dot is where and as large as the plane has it.
+bool PatternEye::fits(const DotFit& dot, const PlaneMap& map, const PatternShape& shape,
+                      int place) const {
+  const DotPlaces places = dot_places(shape);
+  const Eigen::Vector2d& p_l = places[static_cast<std::size_t>(place)];
+  const double radius = dot_radius(shape, place);
+  const Eigen::Vector2d off = map.jacobian(p_l).inverse() * (dot.shape.centre - map(p_l));
+  return off.norm() < parameters_.max_offset_ratio * radius &&
+         std::abs(std::log(size_of(dot.shape) / size_of(map.circle(p_l, radius)))) < kMaxGrowth;
+}
+
+std::optional<PlaneMap> PatternEye::fit_dots(const PatternCandidate& candidate, const Window& frame,
+                                             std::array<DotFit, kPatternDots>& dots) {
+  const DotPlaces places = dot_places(candidate.shape);
+  std::vector<PlanePoint> points;
+  double blur = kStartBlur;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (!candidate.dots[i]) continue;
+    dots[i] = fitter_.fit(block_, *candidate.dots[i], blur);
+    if (dots[i].status != DotStatus::whole) continue;
+    blur = dots[i].blur;
+    points.push_back({places[i], dots[i].shape.centre});
+  }
+  auto map = fit_plane_map(points);
+  if (!map) return std::nullopt;
+  // Where the blob finder saw nothing, the plane says where to look.
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (dots[i].status == DotStatus::whole) continue;
+    const EllipseShape start =
+        map->circle(places[i], dot_radius(candidate.shape, static_cast<int>(i)));
+    if (cut_by(frame, start))
+      dots[i].status = DotStatus::cut;
+    else
+      dots[i] = fitter_.fit(block_, start, blur);
+  }
+  return map;
+}
+
+PatternSight PatternEye::measure(const PatternCandidate& candidate, const Window& frame) {
+  PatternSight sight;
+  sight.shape = candidate.shape;
+  sight.map = candidate.map;
+  sight.centre = candidate.dots[0]->centre;
+  sight.feature.status = FeatureStatus::occluded;
+  const auto map = fit_dots(candidate, frame, sight.dots);
+  if (!map) return sight;
+  sight.map = *map;
+  for (int i = 0; i < kPatternDots; ++i) {
+    DotFit& dot = sight.dots[static_cast<std::size_t>(i)];
+    if (dot.status == DotStatus::whole && !fits(dot, sight.map, sight.shape, i))
+      dot.status = DotStatus::hidden;
+  }
+  read(sight);
+  return sight;
+}
+
+// The code, and by it labels, landmark and status.
+void PatternEye::read(PatternSight& sight) {
+  DotLevels levels;
+  bool cut = false;
+  int faint = 0;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const DotFit& dot = sight.dots[i];
+    if (dot.status == DotStatus::whole) levels[i] = dot.levels;
+    cut = cut || dot.status == DotStatus::cut;
+    faint += dot.status == DotStatus::faint ? 1 : 0;
+  }
+  const CodeReading reading = read_code(levels, parameters_.min_confidence);
+  PointsFeature& feature = sight.feature;
+  feature.confidence = reading.confidence;
+  if (reading.status != ReadStatus::read) {
+    feature.status = reading.status == ReadStatus::doubtful ? FeatureStatus::unreadable
+                     : cut                                  ? FeatureStatus::cut_by_border
+                     : 2 * faint > kPatternDots             ? FeatureStatus::low_contrast
+                                                            : FeatureStatus::occluded;
+    return;
+  }
+  sight.shape.code = reading.code;
+  turn_to_labels(sight, reading.first);
+  list_points(sight);
+  feature.code = reading.code;
+  const Landmark* landmark = find_code(known_.map, sight.shape);
+  if (landmark != nullptr) feature.landmark = landmark->id;
+  feature.status =
+      landmark != nullptr || known_.any ? FeatureStatus::found : FeatureStatus::unknown_code;
+}
+
+// Turns places to labels: the black point becomes the first.
+void PatternEye::turn_to_labels(PatternSight& sight, int first) const {
+  const std::array<DotFit, kPatternDots> places = sight.dots;
+  for (std::size_t ring = 1; ring < kPatternDots; ring += kDotsPerRing)
+    for (std::size_t i = 0; i < kDotsPerRing; ++i)
+      sight.dots[ring + i] = places[ring + (i + static_cast<std::size_t>(first)) % kDotsPerRing];
+  const DotPlaces labels = dot_places(sight.shape);
+  std::vector<PlanePoint> points;
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    if (sight.dots[i].status == DotStatus::whole)
+      points.push_back({labels[i], sight.dots[i].shape.centre});
+  if (const auto map = fit_plane_map(points)) sight.map = *map;
+  sight.centre = sight.map(Eigen::Vector2d::Zero());
+}
+
+void PatternEye::list_points(PatternSight& sight) const {
+  sight.feature.points.clear();
+  for (int label = 0; label < kPatternDots; ++label) {
+    const DotFit& dot = sight.dots[static_cast<std::size_t>(label)];
+    if (dot.status == DotStatus::whole)
+      sight.feature.points.push_back({label, dot.shape.centre, dot.centre_covariance});
+  }
+}
+
+// The last plane, moved and scaled as the centre-point shows.
+PlaneMap PatternEye::predict(const Frame& frame, const PatternSight& last,
+                             const Eigen::Vector2d& motion) {
+  PlaneMap map = last.map;
+  Eigen::Matrix3d step = Eigen::Matrix3d::Identity();
+  step.topRightCorner<2, 1>() = motion;
+  map.iHl = step * map.iHl;
+  const EllipseShape expected = map.circle(Eigen::Vector2d::Zero(), last.shape.centre_radius_m);
+  const Window window = intersect(window_round(expected, kCentreMargin), frame.full());
+  if (window.width < 8 || window.height < 8) return map;
+  block_.read(frame, window);
+  detect(false);
+  const Blob* best = nullptr;
+  double least = kCentreMargin;
+  for (const Blob& blob : blobs_) {
+    const double off = (blob.ellipse.centre - expected.centre).norm();
+    if (blob.cut || off > least ||
+        std::abs(std::log(size_of(blob.ellipse) / size_of(expected))) > kMaxGrowth)
+      continue;
+    best = &blob;
+    least = off;
+  }
+  if (best == nullptr) return map;
+  step.topRightCorner<2, 1>() = best->ellipse.centre - expected.centre;
+  map.iHl = step * map.iHl;
+  return map;
+}
+
+std::optional<PatternSight> PatternEye::follow(const Frame& frame, const PatternSight& last,
+                                               const Eigen::Vector2d& motion) {
+  const PlaneMap predicted = predict(frame, last, motion);
+  PatternSight sight = last;
+  const DotPlaces places = dot_places(last.shape);
+  std::vector<PlanePoint> points;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const double radius = dot_radius(last.shape, static_cast<int>(i));
+    const EllipseShape start = predicted.circle(places[i], radius);
+    DotFit& dot = sight.dots[i];
+    dot.status = DotStatus::cut;
+    if (cut_by(frame.full(), start)) continue;
+    const DotFit& before = last.dots[i];
+    block_.read(frame, intersect(dot_box(start, before.blur), frame.full()));
+    dot = before.status == DotStatus::whole ? fitter_.fit(block_, start, before.blur, before.levels)
+                                            : fitter_.fit(block_, start, before.blur);
+    if (dot.status == DotStatus::whole) points.push_back({places[i], dot.shape.centre});
+  }
+  if (static_cast<int>(points.size()) < parameters_.min_dots) return std::nullopt;
+  const auto map = fit_plane_map(points);
+  if (!map) return std::nullopt;
+  sight.map = *map;
+  sight.centre = (*map)(Eigen::Vector2d::Zero());
+
+  const std::vector<PatternDot> pattern = pattern_dots(last.shape);
+  const std::size_t black = sight.dots[1].status == DotStatus::whole ? 1 : 1 + kDotsPerRing;
+  if (sight.dots[black].status != DotStatus::whole) return std::nullopt;
+  for (int i = 0; i < kPatternDots; ++i) {
+    DotFit& dot = sight.dots[static_cast<std::size_t>(i)];
+    if (dot.status != DotStatus::whole) continue;
+    if (!fits(dot, sight.map, sight.shape, i)) {
+      dot.status = DotStatus::hidden;
+      continue;
+    }
+    const DotColour colour = pattern[static_cast<std::size_t>(i)].colour;
+    if (!looks_like(dot.levels, sight.dots[black].levels, colour)) return std::nullopt;
+  }
+  list_points(sight);
+  if (static_cast<int>(sight.feature.points.size()) < parameters_.min_dots) return std::nullopt;
+  return sight;
+}
+
+bool PatternEye::dots_near(const std::vector<LabelledPoint>& points) const {
+  constexpr double kNear = 6.0;  // px
+  const auto near = std::count_if(points.begin(), points.end(), [&](const LabelledPoint& point) {
+    return std::any_of(blobs_.begin(), blobs_.end(), [&](const Blob& blob) {
+      return (blob.ellipse.centre - point.uv).norm() < kNear + 0.3 * size_of(blob.ellipse);
+    });
+  });
+  return near >= kEnoughNear;
+}
+
+}  // namespace vigia::tracking

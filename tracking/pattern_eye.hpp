@@ -1,0 +1,62 @@
+#pragma once
+
+#include "code_reader.hpp"
+#include "colour_block.hpp"
+#include "dot_fit.hpp"
+#include "pattern_assembly.hpp"
+
+#include <optional>
+#include <vector>
+
+#include "vigia/tracking/pattern_tracker.hpp"
+
+namespace vigia::tracking {
+
+/// A pattern in one frame: the feature, and what the next frame is predicted from.
+struct PatternSight {
+  PointsFeature feature;
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< image of the centre-point
+  PatternShape shape;                                ///< with the code, when it was read
+  PlaneMap map;                                      ///< of labels, when the code was read
+  std::array<DotFit, kPatternDots> dots;             ///< by label, when the code was read
+};
+
+/// Sees patterns in single frames.
+class PatternEye {
+ public:
+  PatternEye(const KnownCodes& known, const PatternTrackerParameters& parameters);
+
+  /// Every pattern in a window, read or not.
+  std::vector<PatternSight> find(const imaging::Frame& frame, const imaging::Window& window);
+
+  /// The pattern of @p last in the next frame, moved by about @p motion. Nothing when too few dots
+  /// are where they should be or one has another colour.
+  std::optional<PatternSight> follow(const imaging::Frame& frame, const PatternSight& last,
+                                     const Eigen::Vector2d& motion);
+
+  /// Whether several dots, as the last find() saw them, lie at @p points.
+  bool dots_near(const std::vector<LabelledPoint>& points) const;
+
+ private:
+  void detect(bool halved);
+  PatternSight measure(const PatternCandidate& candidate, const imaging::Window& frame);
+  std::optional<PlaneMap> fit_dots(const PatternCandidate& candidate, const imaging::Window& frame,
+                                   std::array<DotFit, kPatternDots>& dots);
+  void read(PatternSight& sight);
+  void turn_to_labels(PatternSight& sight, int first) const;
+  void list_points(PatternSight& sight) const;
+  PlaneMap predict(const imaging::Frame& frame, const PatternSight& last,
+                   const Eigen::Vector2d& motion);
+  bool fits(const DotFit& dot, const PlaneMap& map, const PatternShape& shape, int place) const;
+
+  KnownCodes known_;
+  PatternTrackerParameters parameters_;
+  PatternAssembly assembly_;
+  BlobFinder finder_;
+  DotFitter fitter_;
+  ColourBlock block_;
+  vpImage<unsigned char> luma_;
+  std::vector<Blob> blobs_;
+};
+
+}  // namespace vigia::tracking
