@@ -1,5 +1,7 @@
 #include "vigia/localization/points_model.hpp"
 
+#include "camera_twists.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -63,6 +65,25 @@ Eigen::Vector2d lens_shift(const Intrinsics& intrinsics, const Eigen::Vector2d& 
   return focal.cwiseProduct(-0.25 * intrinsics.kdu * (10.0 * T * y + T.trace() * y));
 }
 
+/// H with HᵀH = A and y with Hᵀy = b, by a pivoted Cholesky decomposition; b lies in the range of
+/// A.
+void compress(const Eigen::Matrix<double, 6, 6>& A, const Eigen::Matrix<double, 6, 1>& b,
+              PointsMeasurement& measurement) {
+  const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> factor(A);
+  const Eigen::Matrix<double, 6, 1> D = factor.vectorD();
+  const double least = 1e-13 * D.maxCoeff();
+  Eigen::Matrix<double, 6, 1> root;
+  Eigen::Matrix<double, 6, 1> inverse_root;
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    root(i) = D(i) > least ? std::sqrt(D(i)) : 0.0;
+    inverse_root(i) = D(i) > least ? 1.0 / root(i) : 0.0;
+  }
+  const Eigen::Matrix<double, 6, 6> upper = factor.matrixU();
+  measurement.H = root.asDiagonal() * upper * factor.transpositionsP();
+  const Eigen::Matrix<double, 6, 1> permuted = factor.transpositionsP() * b;
+  measurement.y = inverse_root.asDiagonal() * factor.matrixL().solve(permuted);
+}
+
 std::vector<LandmarkPoint> corners(const TagShape& tag) {
   const double h = 0.5 * tag.side_m;
   return {{0, {-h, -h}, 0.0}, {1, {h, -h}, 0.0}, {2, {h, h}, 0.0}, {3, {-h, h}, 0.0}};
@@ -85,11 +106,10 @@ std::vector<SeenPoint> seen_points(const Landmark& landmark, const PointsObserva
   const std::vector<LandmarkPoint> model = landmark_points(landmark);
   std::vector<SeenPoint> seen;
   for (const LabelledPoint& point : observation.points) {
-    const auto known =
-        std::find_if(model.begin(), model.end(),
-                     [&point](const LandmarkPoint& m) { return m.label == point.label; });
-    const Eigen::Matrix2d R =
-        point.covariance + floor_px * floor_px * Eigen::Matrix2d::Identity();
+    const auto known = std::find_if(model.begin(), model.end(), [&point](const LandmarkPoint& m) {
+      return m.label == point.label;
+    });
+    const Eigen::Matrix2d R = point.covariance + floor_px * floor_px * Eigen::Matrix2d::Identity();
     const bool usable = known != model.end() && point.uv.allFinite() && R.allFinite() &&
                         R(0, 0) > 0.0 && R.determinant() > 0.0;
     if (usable) seen.push_back({*known, point.uv, R.inverse()});
@@ -149,6 +169,35 @@ std::optional<PointsFit> fit_points(const std::vector<SeenPoint>& points,
     fit.chi2 += r.dot(seen.information * r);
   }
   return fit;
+}
+
+std::optional<PointsMeasurement> measure_points(const std::vector<SeenPoint>& points,
+                                                const Eigen::Isometry3d& wMl,
+                                                const SensorSnapshot& sensor,
+                                                const HeadGeometry& geometry, const Pose2& pose,
+                                                const LookBias& bias) {
+  const HeadAngles head{sensor.head.pan + bias.pan, sensor.head.tilt + bias.tilt};
+  const Eigen::Isometry3d wMc = to_isometry(pose) * camera_in_base(geometry, head);
+  const Eigen::Isometry3d cMl = wMc.inverse() * wMl;
+  Intrinsics intrinsics = sensor.intrinsics;
+  intrinsics.px *= std::exp(bias.log_focal);
+  intrinsics.py *= std::exp(bias.log_focal);
+  const auto fit = fit_points(points, intrinsics, cMl);
+  if (!fit) return std::nullopt;
+
+  // A camera that moves by (v, ω) sees the landmark move by (−v − ω × t, −ω).
+  const Eigen::Matrix<double, 6, 5> twists = camera_twists(geometry, head, wMc);
+  Eigen::Matrix<double, 7, 6> dfit_dstate = Eigen::Matrix<double, 7, 6>::Zero();
+  dfit_dstate.block<3, 5>(0, 0) =
+      skew(cMl.translation()) * twists.bottomRows<3>() - twists.topRows<3>();
+  dfit_dstate.block<3, 5>(3, 0) = -twists.bottomRows<3>();
+  dfit_dstate(6, 5) = 1.0;
+  const Eigen::Matrix<double, 6, 6> A = dfit_dstate.transpose() * fit->information * dfit_dstate;
+  const Eigen::Matrix<double, 6, 1> b = dfit_dstate.transpose() * fit->gradient;
+  PointsMeasurement measurement;
+  measurement.chi2 = fit->chi2;
+  compress(A, b, measurement);
+  return measurement;
 }
 
 }  // namespace vigia::localization

@@ -7,8 +7,11 @@
 #include <Eigen/Geometry>
 
 #include "vigia/core/camera.hpp"
+#include "vigia/core/head.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/core/observation.hpp"
+#include "vigia/core/pose.hpp"
+#include "vigia/localization/disc_model.hpp"
 
 namespace vigia::localization {
 
@@ -70,5 +73,21 @@ struct PointsFit {
 /// Nothing when one of the points has no image from there.
 std::optional<PointsFit> fit_points(const std::vector<SeenPoint>& points,
                                     const Intrinsics& intrinsics, const Eigen::Isometry3d& cMl);
+
+/// What the points of one image say about (x, y, θ) and the look's biases (pan, tilt, log focal),
+/// compressed without loss to six numbers at the point of linearisation x: y = H (truth − x) + e,
+/// e ~ N(0, I). Rows that say nothing are zero.
+struct PointsMeasurement {
+  Eigen::Matrix<double, 6, 6> H;
+  Eigen::Matrix<double, 6, 1> y;
+  double chi2 = 0.0;  ///< Σ (seen − predicted)ᵀ W (seen − predicted)
+};
+
+/// Compresses the points of a landmark at wMl. Nothing when one of them has no image from there.
+std::optional<PointsMeasurement> measure_points(const std::vector<SeenPoint>& points,
+                                                const Eigen::Isometry3d& wMl,
+                                                const SensorSnapshot& sensor,
+                                                const HeadGeometry& geometry, const Pose2& pose,
+                                                const LookBias& bias);
 
 }  // namespace vigia::localization
