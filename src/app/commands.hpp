@@ -10,5 +10,6 @@ void add_run(CLI::App& app, int& status);
 void add_check(CLI::App& app, int& status);
 void add_track(CLI::App& app, int& status);
 void add_evaluate(CLI::App& app, int& status);
+void add_reproduce(CLI::App& app, int& status);
 
 }  // namespace vigia::app

@@ -35,6 +35,7 @@ int run_program(int argc, char** argv) {
   vigia::app::add_check(app, status);
   vigia::app::add_track(app, status);
   vigia::app::add_evaluate(app, status);
+  vigia::app::add_reproduce(app, status);
   try {
     app.parse(argc, argv);
     return status;

@@ -28,7 +28,7 @@ struct AssociationModel {
   const FloorPlan* plan;  ///< null: nothing occludes
   const HeadGeometry& geometry;
   const SensorNoise& noise;
-  double gate;  ///< bound on the NIS, 3 degrees of freedom
+  double gate;  ///< bound on the NIS
 };
 
 /// All landmarks whose predicted image lies within the gate of the measured (u, v, s) and that no

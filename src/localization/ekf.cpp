@@ -14,8 +14,9 @@
 namespace vigia::localization {
 namespace {
 
-constexpr int kDof = 3;        // of (u, v, s)
 constexpr int kPointsDof = 6;  // of all that points say about the state
+/// σ of ln √(ab) that teaches nothing: a factor of e^1000.
+constexpr double kUnmeasuredSize = 1e3;
 /// A look without an image for so long (s) is not linearised anew any more.
 constexpr double kLookPause = 1.0;
 /// Of a look of more events the older half is not linearised anew any more.
@@ -47,7 +48,8 @@ EkfLocalizer::EkfLocalizer(LandmarkMap map, const HeadGeometry& geometry, const 
       geometry_(geometry),
       params_(params),
       plan_(std::move(plan)),
-      gate_(chi_square_quantile(params.gate_probability, kDof)),
+      dof_(params.use_size ? 3 : 2),
+      gate_(chi_square_quantile(params.gate_probability, dof_)),
       nis_limits_(static_cast<std::size_t>(kPointsDof * params.nis_looks) + 1) {
   for (std::size_t dof = 1; dof < nis_limits_.size(); ++dof)
     nis_limits_[dof] = chi_square_quantile(1.0 - params.nis_probability, static_cast<double>(dof));
@@ -116,12 +118,12 @@ EkfLocalizer::Match EkfLocalizer::match(const EllipseObservation& observation,
   const Association found = associate(model, at, observation, z, R);
   if (!found.any_image) return {{UpdateStatus::degenerate, std::nullopt, 0.0, 0}, std::nullopt};
   if (found.inside_gate.empty())
-    return {{UpdateStatus::gated, std::nullopt, found.best_nis, kDof}, std::nullopt};
+    return {{UpdateStatus::gated, std::nullopt, found.best_nis, dof_}, std::nullopt};
   const Candidate& best = found.inside_gate.front();
   if (found.inside_gate.size() > 1 &&
       found.inside_gate[1].cost - best.cost < 2.0 * std::log(params_.ambiguity_ratio))
-    return {{UpdateStatus::ambiguous, std::nullopt, best.nis, kDof}, std::nullopt};
-  return {{UpdateStatus::fused, best.landmark->id, best.nis, kDof},
+    return {{UpdateStatus::ambiguous, std::nullopt, best.nis, dof_}, std::nullopt};
+  return {{UpdateStatus::fused, best.landmark->id, best.nis, dof_},
           DiscFix{observation.sensor, *best.landmark, z, R}};
 }
 
@@ -217,6 +219,11 @@ Eigen::Matrix3d EkfLocalizer::measurement_covariance(const EllipseObservation& o
   const Eigen::Vector3d floor(params_.centre_floor_px, params_.centre_floor_px, params_.size_floor);
   Eigen::Matrix3d R = measured_disc_covariance(observation);
   R.diagonal() += floor.cwiseAbs2();
+  if (!params_.use_size) {
+    R.row(2).setZero();
+    R.col(2).setZero();
+    R(2, 2) = kUnmeasuredSize * kUnmeasuredSize;
+  }
   return R;
 }
 
@@ -307,7 +314,7 @@ void EkfLocalizer::watch_innovations(const UpdateResult& result, LookId look, bo
 bool EkfLocalizer::innovations_are_unlikely() const {
   double sum = 0.0;
   // Looks to come count as discs.
-  int dof = kDof * (params_.nis_looks - static_cast<int>(first_of_looks_.size()));
+  int dof = dof_ * (params_.nis_looks - static_cast<int>(first_of_looks_.size()));
   for (const UpdateResult& first : first_of_looks_) {
     sum += first.nis;
     dof += first.dof;

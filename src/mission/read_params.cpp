@@ -28,6 +28,7 @@ void read_ekf(MapReader reader, const sim::RobotParams& robot, localization::Ekf
   params.ambiguity_ratio = reader.number("ambiguity_ratio", {1.0, 1e9}, params.ambiguity_ratio);
   params.centre_floor_px = reader.number("centre_floor_px", {0.0, 10.0}, params.centre_floor_px);
   params.size_floor = reader.number("size_floor", {0.0, 1.0}, params.size_floor);
+  params.use_size = reader.boolean("use_size", params.use_size);
   params.iterations = static_cast<int>(reader.integer("iterations", {1, 20}, params.iterations));
   params.look_images =
       static_cast<int>(reader.integer("look_images", {1, 10000}, params.look_images));

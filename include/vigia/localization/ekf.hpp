@@ -17,7 +17,7 @@ struct EkfParams {
   OdometryNoise odometry;  ///< of the increments
   SensorNoise sensor;      ///< of the head's and the zoom's readings
 
-  /// Share of right measurements that the χ² gate (3 degrees of freedom) lets pass.
+  /// Share of right measurements that the χ² gate lets pass.
   double gate_probability = 0.999;
   /// An observation is ambiguous unless the best landmark is so many times likelier than the next.
   double ambiguity_ratio = 20.0;
@@ -25,6 +25,9 @@ struct EkfParams {
   /// a disc's centre or a point in px, and a disc's relative size.
   double centre_floor_px = 0.002;
   double size_floor = 5e-5;
+  /// Whether the disc's apparent size is measured. Without it only the direction counts, as in
+  /// Armingol: pan and tilt.
+  bool use_size = true;
   /// Gauss–Newton steps of an update, at most: near a landmark one step is not enough.
   int iterations = 4;
   /// A step that moves the look by less (m, rad) is the last: what is left is of second order,
@@ -123,6 +126,7 @@ class EkfLocalizer final : public Localizer {
   HeadGeometry geometry_;
   EkfParams params_;
   std::optional<FloorPlan> plan_;
+  int dof_;  ///< of a measurement: (u, v, s), or (u, v)
   double gate_;
   std::vector<double> nis_limits_;  ///< by the degrees of freedom of the sum
 

@@ -1,0 +1,13 @@
+#include "papers.hpp"
+
+namespace vigia::app {
+
+const std::vector<Paper>& papers() {
+  static const std::vector<Paper> all{
+      {"armingol", "odometry against relocalisation with a pan-tilt-zoom camera",
+       &reproduce_armingol},
+  };
+  return all;
+}
+
+}  // namespace vigia::app

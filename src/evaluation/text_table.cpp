@@ -1,0 +1,64 @@
+#include "vigia/evaluation/text_table.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+
+namespace vigia::evaluation {
+namespace {
+
+/// Code points: the bytes that do not continue one.
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
+  }));
+}
+
+std::vector<std::size_t> column_widths(const TextRows& rows) {
+  std::vector<std::size_t> widths(rows.front().size(), 0);
+  for (const auto& row : rows) {
+    assert(row.size() == widths.size());
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i]));
+  }
+  return widths;
+}
+
+}  // namespace
+
+std::string aligned_table(const TextRows& rows) {
+  if (rows.empty()) return "";
+  const auto widths = column_widths(rows);
+  std::string text;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    for (std::size_t i = 0; i < widths.size(); ++i) {
+      const std::string& cell = rows[r][i];
+      const std::string blanks(widths[i] - width_of(cell), ' ');
+      if (i == 0)
+        text += cell + (widths.size() > 1 ? blanks : "");
+      else
+        text += "  " + blanks + cell;
+    }
+    text += '\n';
+    if (r > 0) continue;
+    for (std::size_t i = 0; i < widths.size(); ++i)
+      text += (i == 0 ? "" : "  ") + std::string(widths[i], '-');
+    text += '\n';
+  }
+  return text;
+}
+
+std::string markdown_table(const TextRows& rows) {
+  std::string text;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    text += '|';
+    for (const auto& cell : rows[r]) text += ' ' + cell + " |";
+    text += '\n';
+    if (r > 0) continue;
+    text += '|';
+    for (std::size_t i = 0; i < rows[r].size(); ++i) text += i == 0 ? "---|" : "---:|";
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace vigia::evaluation
