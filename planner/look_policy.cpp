@@ -1,5 +1,7 @@
 #include "vigia/planner/look_policy.hpp"
 
+#include "pattern_policy.hpp"
+
 #include <algorithm>
 
 namespace vigia::planner {
@@ -69,11 +71,12 @@ std::unique_ptr<LookPolicy> make_look_policy(const std::string& name,
   if (name == "fixed") return std::make_unique<FixedPolicy>(fixed);
   if (name == "random") return std::make_unique<RandomPolicy>(stream);
   if (name == "nearest") return std::make_unique<NearestPolicy>();
+  if (name == "pattern") return std::make_unique<PatternPolicy>();
   return nullptr;
 }
 
 std::vector<std::string> look_policy_names() {
-  return {"fixed", "random", "nearest"};
+  return {"fixed", "random", "nearest", "pattern"};
 }
 
 }  // namespace vigia::planner

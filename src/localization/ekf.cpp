@@ -14,7 +14,7 @@
 namespace vigia::localization {
 namespace {
 
-constexpr int kPointsDof = 6;  // of all that points say about the state
+constexpr int kPointsDof = 5;  // at most, of what points say about the state
 /// σ of ln √(ab) that teaches nothing: a factor of e^1000.
 constexpr double kUnmeasuredSize = 1e3;
 /// A look without an image for so long (s) is not linearised anew any more.

@@ -78,8 +78,9 @@ void compress(const Eigen::Matrix<double, 6, 6>& A, const Eigen::Matrix<double, 
     root(i) = D(i) > least ? std::sqrt(D(i)) : 0.0;
     inverse_root(i) = D(i) > least ? 1.0 / root(i) : 0.0;
   }
-  const Eigen::Matrix<double, 6, 6> upper = factor.matrixU();
-  measurement.H = root.asDiagonal() * upper * factor.transpositionsP();
+  Eigen::Matrix<double, 6, 6> permutation = Eigen::Matrix<double, 6, 6>::Identity();
+  permutation = factor.transpositionsP() * permutation;
+  measurement.H = root.asDiagonal() * (factor.matrixU() * permutation);
   const Eigen::Matrix<double, 6, 1> permuted = factor.transpositionsP() * b;
   measurement.y = inverse_root.asDiagonal() * factor.matrixL().solve(permuted);
 }

@@ -156,8 +156,7 @@ PointsPose solve_points(const std::vector<SeenPoint>& points, const Intrinsics& 
   if (other && other->chi2 < best->chi2) std::swap(best, other);
   result.pose = *best;
   result.twin = other;
-  const bool as_good =
-      other && other->chi2 - best->chi2 < 2.0 * std::log(params.ambiguity_ratio);
+  const bool as_good = other && other->chi2 - best->chi2 < 2.0 * std::log(params.ambiguity_ratio);
   result.status = as_good ? PointsPoseStatus::ambiguous : PointsPoseStatus::solved;
   result.phi = view_of(best->cMl).phi;
   result.frontal = result.phi < params.frontal_below;

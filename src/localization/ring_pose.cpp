@@ -34,8 +34,10 @@ RingImage other_branch(RingImage image) {
 }
 
 /// Adán eq. 16 (mended) and 17 by atan2, averaged over first, third, fifth and seventh point. The
-/// third lies at the viewer's right, which is −X_w.
-double theta_of(const RingPoints& p, double phi) {
+/// third lies at the viewer's right, which is −X_w. Where @p origin is off the centre-point, the
+/// average cancels that to first order.
+double theta_of(RingPoints p, const Eigen::Vector2d& origin, double phi) {
+  for (Eigen::Vector2d& point : p) point -= origin;
   const double c = std::cos(phi);
   const std::array<double, 4> thetas{
       std::atan2(-p[0].x() * c, p[0].y()), std::atan2(-p[2].y(), -p[2].x() * c),
@@ -67,7 +69,8 @@ ViewParameters exact_view(const RingImage& image, double R) {
 
 /// What the ring's pixels are in the camera whose axis the method takes for that of the pattern.
 struct RingInput {
-  RingPoints points;  ///< normalised, x left, y up
+  RingPoints points;                            ///< normalised, x left, y up
+  std::optional<Eigen::Vector2d> centre_point;  ///< likewise
   Eigen::Matrix3d vRc = Eigen::Matrix3d::Identity();
   double sigma = 0.0;  ///< of a coordinate, normalised
 };
@@ -75,12 +78,8 @@ struct RingInput {
 std::optional<RingInput> read_ring(const PointsObservation& observation,
                                    const RingPoseParams& params) {
   const Intrinsics& intrinsics = observation.sensor.intrinsics;
-  Eigen::Vector2d centre(intrinsics.u0, intrinsics.v0);
-  if (params.centre_view) {
-    const LabelledPoint* point = find_label(observation, 0);
-    if (point == nullptr) return std::nullopt;
-    centre = point->uv;
-  }
+  const LabelledPoint* middle = find_label(observation, 0);
+  if (params.centre_view && middle == nullptr) return std::nullopt;
   std::vector<Eigen::Vector2d> pixels;
   double variance = 0.0;
   const int first = params.ring == Ring::outer ? 1 : 1 + kDotsPerRing;
@@ -90,18 +89,22 @@ std::optional<RingInput> read_ring(const PointsObservation& observation,
     pixels.push_back(point->uv);
     variance += 0.5 * point->covariance.trace() / kDotsPerRing;
   }
-  const CentredImage image = centre_image(intrinsics, centre, pixels);
+  if (middle != nullptr) pixels.push_back(middle->uv);
+  const Eigen::Vector2d axis(intrinsics.u0, intrinsics.v0);
+  const CentredImage image =
+      centre_image(intrinsics, params.centre_view ? middle->uv : axis, pixels);
   RingInput input;
   for (std::size_t i = 0; i < input.points.size(); ++i) input.points[i] = -image.points[i];
+  if (middle != nullptr) input.centre_point = -image.points.back();
   input.vRc = image.vRc;
   input.sigma = std::sqrt(variance) / intrinsics.px;
   return input;
 }
 
-/// How far the ellipse's centre lies from the centre-point towards the near side, −y'_c, where the
+/// How far the ellipse's centre lies from the centre-point towards the near side, −y', where the
 /// branch of ψ is right; negative on the wrong branch.
-double near_offset(const RingImage& image) {
-  return -image.centre.y();
+double near_offset(const RingImage& image, const Eigen::Vector2d& centre_point) {
+  return turned(centre_point, image.psi).y() - image.centre.y();
 }
 
 }  // namespace
@@ -138,8 +141,8 @@ std::optional<RingImage> fit_ring(const RingPoints& points) {
   const double M = Dp * Dp / (4.0 * Ap) + Ep * Ep / (4.0 * Cp) + 1.0;  // eq. 5
   image.a = scale * std::sqrt(M / Ap);                                 // eq. 6
   image.b = scale * std::sqrt(M / Cp);
-  image.centre = scale * Eigen::Vector2d(-Dp / (2.0 * Ap), -Ep / (2.0 * Cp)) +
-                 turned(mean, image.psi);
+  image.centre =
+      scale * Eigen::Vector2d(-Dp / (2.0 * Ap), -Ep / (2.0 * Cp)) + turned(mean, image.psi);
   for (std::size_t i = 0; i < points.size(); ++i) image.points[i] = turned(points[i], image.psi);
   return image;
 }
@@ -153,10 +156,18 @@ std::optional<RingPose> ring_pose(const PatternShape& shape, const PointsObserva
   const double R = params.ring == Ring::outer ? shape.outer_radius_m : shape.inner_radius_m;
   const bool exact = params.method == RingMethod::exact;
   ViewParameters view = exact ? exact_view(*image, R) : published_view(*image, R);
-  const bool wrong = exact ? near_offset(*image) < 0.0
-                           : std::abs(theta_of(image->points, view.phi)) > 0.5 * kPi;
+  // The axis of a turned view passes through the centre-point, the published method takes that for
+  // granted, else the ellipse's centre stands for it.
+  const bool about_axis = params.centre_view || !exact;
+  const auto theta_in = [&](const RingImage& ring) {
+    const Eigen::Vector2d origin = about_axis ? Eigen::Vector2d(0.0, 0.0) : ring.centre;
+    return theta_of(ring.points, origin, view.phi);
+  };
+  const auto& middle = input->centre_point;
+  const bool wrong =
+      exact && middle ? near_offset(*image, *middle) < 0.0 : std::abs(theta_in(*image)) > 0.5 * kPi;
   if (wrong) image = other_branch(*image);
-  view.theta = theta_of(image->points, view.phi);
+  view.theta = theta_in(*image);
   view.psi = image->psi;
 
   RingPose pose;
@@ -166,8 +177,8 @@ std::optional<RingPose> ring_pose(const PatternShape& shape, const PointsObserva
   // The offsets of view and twin are ±e; the centre's and the centre-point's noise blur it.
   const double e = image->b * R * std::sin(view.phi) / view.distance;
   const double variance = input->sigma * input->sigma * (2.0 / kDotsPerRing + 1.0);
-  pose.twin_as_good =
-      2.0 * std::abs(near_offset(*image)) * e < variance * std::log(params.ambiguity_ratio);
+  const double offset = middle ? std::abs(near_offset(*image, *middle)) : 0.0;
+  pose.twin_as_good = 2.0 * offset * e < variance * std::log(params.ambiguity_ratio);
   return pose;
 }
 

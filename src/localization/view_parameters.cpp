@@ -45,8 +45,7 @@ Eigen::Isometry3d pose_of(const ViewParameters& view) {
 
 ViewParameters view_of(const Eigen::Isometry3d& cMl) {
   const Eigen::Matrix3d vRl = sight_rotation(cMl.translation()) * cMl.linear();
-  const Eigen::Matrix3d eRW =
-      kCameraAxes.asDiagonal() * vRl * world_from_landmark().transpose();
+  const Eigen::Matrix3d eRW = kCameraAxes.asDiagonal() * vRl * world_from_landmark().transpose();
   ViewParameters view;
   const double sine = std::hypot(eRW(2, 0), eRW(2, 2));
   view.phi = std::atan2(sine, -eRW(2, 1));

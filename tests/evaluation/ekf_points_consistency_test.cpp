@@ -15,7 +15,7 @@ using localization::test::Drive;
 using localization::test::DriveNoise;
 using localization::test::DriveStep;
 
-constexpr int kRuns = 100;
+constexpr int kRuns = 60;
 
 /// Pattern and tag looks along the drive of the discs' consistency test.
 struct Campaign {
@@ -61,18 +61,19 @@ void run(const DriveNoise& noise, std::uint64_t seed, Campaign& campaign) {
   }
 }
 
-/// DESIGN's statistics, as for discs.
+/// DESIGN's statistics, as for discs. There are 18 look instants: that more than three of them lie
+/// outside a 95 % band by chance has a probability of 1 %.
 void expect_consistent(const DriveNoise& noise) {
   Campaign campaign;
   for (std::uint64_t seed = 0; seed < kRuns; ++seed) run(noise, seed, campaign);
   const Anees consistency = anees(campaign.nees, 3);
   const Estimate ratio = pcrlb_ratio(campaign.errors, campaign.bounds, 1);
-  EXPECT_GE(consistency.inside_band, 0.9);
+  EXPECT_GE(consistency.inside_band, 15.0 / 18.0);
   EXPECT_GT(consistency.mean_per_dof, 0.9);
   EXPECT_LT(consistency.mean_per_dof, 1.1);
   EXPECT_LE(ratio.value, 1.10);
-  EXPECT_GT(ratio.interval.high, 1.0);                  // nobody beats the bound
-  EXPECT_LT(campaign.other, 0.006 * campaign.fused);    // two gates of 99.9 %
+  EXPECT_GT(ratio.interval.high, 1.0);                // nobody beats the bound
+  EXPECT_LT(campaign.other, 0.006 * campaign.fused);  // two gates of 99.9 %
 }
 
 TEST(EkfPointsConsistency, IsConsistentAndAtTheBoundWithPatternsAndTags) {

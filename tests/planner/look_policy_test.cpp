@@ -49,7 +49,7 @@ class LookPolicyTest : public ::testing::Test {
 };
 
 TEST_F(LookPolicyTest, EveryNameMakesThePolicyOfThatName) {
-  EXPECT_THAT(look_policy_names(), ElementsAre("fixed", "random", "nearest"));
+  EXPECT_THAT(look_policy_names(), ElementsAre("fixed", "random", "nearest", "pattern"));
   for (const std::string& name : look_policy_names())
     EXPECT_EQ(make_look_policy(name, 1, RandomStream(1, "look"))->name(), name);
   EXPECT_EQ(make_look_policy("clever", 1, RandomStream(1, "look")), nullptr);

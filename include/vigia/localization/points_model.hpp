@@ -76,7 +76,8 @@ std::optional<PointsFit> fit_points(const std::vector<SeenPoint>& points,
 
 /// What the points of one image say about (x, y, θ) and the look's biases (pan, tilt, log focal),
 /// compressed without loss to six numbers at the point of linearisation x: y = H (truth − x) + e,
-/// e ~ N(0, I). Rows that say nothing are zero.
+/// e ~ N(0, I). Rows that say nothing are zero: one at least, for a robot that turns about its
+/// camera while the pan turns back leaves the image as it was.
 struct PointsMeasurement {
   Eigen::Matrix<double, 6, 6> H;
   Eigen::Matrix<double, 6, 1> y;

@@ -28,9 +28,9 @@ struct FittedPose {
 
 enum class PointsPoseStatus {
   solved,
-  ambiguous,      ///< solved, and the twin explains the points about as well
-  too_few,        ///< fewer than four usable points
-  degenerate,     ///< the points lie on a line, or nowhere in front of the camera
+  ambiguous,   ///< solved, and the twin explains the points about as well
+  too_few,     ///< fewer than four usable points
+  degenerate,  ///< the points lie on a line, or nowhere in front of the camera
   not_converged,
 };
 

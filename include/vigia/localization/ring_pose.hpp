@@ -14,7 +14,8 @@ enum class Ring { outer, inner };
 
 /// as_published: Adán eq. 10–12 (R sin φ ≪ D), θ by eq. 16–17 with the signs mended; the branch of
 /// ψ is the one of a camera below the pattern (|θ| ≤ 90°). exact: the perspective of the circle
-/// inverted, the branch of ψ by the offset of the ellipse's centre from the centre-point.
+/// inverted, the branch of ψ by the offset of the ellipse's centre from the centre-point where that
+/// was seen.
 enum class RingMethod { as_published, exact };
 
 struct RingPoseParams {
@@ -32,7 +33,7 @@ struct RingPoseParams {
 struct RingImage {
   double a = 0.0;  ///< long semi-axis
   double b = 0.0;
-  double psi = 0.0;                                 ///< the branch in (−π/2, π/2]
+  double psi = 0.0;                                  ///< the branch in (−π/2, π/2]
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< (x'_c, y'_c)
   std::array<Eigen::Vector2d, kDotsPerRing> points;  ///< first to eighth
 };
@@ -44,12 +45,12 @@ std::optional<RingImage> fit_ring(const std::array<Eigen::Vector2d, kDotsPerRing
 struct RingPose {
   ViewParameters view;
   Eigen::Isometry3d cMl;
-  bool frontal = false;     ///< φ is small: φ and θ are poorly determined
+  bool frontal = false;       ///< φ is small: φ and θ are poorly determined
   bool twin_as_good = false;  ///< the image hardly tells the view from its twin (see twin_of())
 };
 
 /// Adán's method on the eight dots of one ring. Nothing when a dot of the ring (or the centre-point
-/// that centre_view and exact need) was not seen or the dots lie on no ellipse.
+/// that centre_view needs) was not seen or the dots lie on no ellipse.
 std::optional<RingPose> ring_pose(const PatternShape& shape, const PointsObservation& observation,
                                   const RingPoseParams& params);
 

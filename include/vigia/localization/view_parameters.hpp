@@ -13,9 +13,9 @@ namespace vigia::localization {
 /// pattern: Z_w up through the first point (y of frame l), Y_w the normal towards the viewer (z of
 /// l), X_w = −x of l. Camera axes e: x left, y up, z forward (c turned by 180° about z).
 struct ViewParameters {
-  double phi = 0.0;  ///< "tilt": angle between normal and line of sight, [0, π/2), frontal = 0
-  double theta = 0.0;     ///< "pan": from Z_w to the line of sight in the pattern's plane, (−π, π]
-  double psi = 0.0;       ///< "swing": of the image about the optical axis, (−π, π]
+  double phi = 0.0;    ///< "tilt": angle between normal and line of sight, [0, π/2), frontal = 0
+  double theta = 0.0;  ///< "pan": from Z_w to the line of sight in the pattern's plane, (−π, π]
+  double psi = 0.0;    ///< "swing": of the image about the optical axis, (−π, π]
   double distance = 0.0;  ///< D, from the optical centre to the centre-point, m; D' = D + f
 };
 

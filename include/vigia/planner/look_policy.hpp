@@ -39,8 +39,8 @@ class LookPolicy {
   virtual std::optional<LandmarkId> choose(const LookContext& context) = 0;
 };
 
-/// "fixed" (the landmark @p fixed), "random" (visible ones, drawn from @p stream) or "nearest"
-/// (visible). Null for another name.
+/// "fixed" (the landmark @p fixed), "random" (visible ones, drawn from @p stream), "nearest"
+/// (visible), or "pattern" (QUIXOTE's three criteria). Null for another name.
 std::unique_ptr<LookPolicy> make_look_policy(const std::string& name,
                                              std::optional<LandmarkId> fixed, RandomStream stream);
 
