@@ -7,17 +7,22 @@
 namespace vigia::localization {
 namespace {
 
-/// Up to six rows, one a component of the measurement.
-using Rows = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::ColMajor, 6, 6>;
-using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 6, 1>;
-
 /// An input about a point. With S = L Lᵀ the innovation's covariance, an image has G = L⁻¹ H,
 /// W = G P and the whitened innovation y: the update is x + Wᵀ y, P − Wᵀ W.
 struct Linearised {
   Eigen::Matrix3d dx_dx = Eigen::Matrix3d::Identity();  ///< of an increment, on the pose
-  Rows G;
-  Rows W;
-  Column y;
+  int rows = 0;  ///< components of the measurement: 3 of a disc, 6 of points, none otherwise
+  Matrix6 G_t;   ///< Gᵀ, in the first columns
+  Matrix6 W_t;
+  Vector6 y;
+
+  /// What the image adds to the adjoint, Gᵀ (W λ + y).
+  template <int N>
+  Vector6 pull(const Vector6& adjoint) const {
+    const Eigen::Matrix<double, N, 1> whitened =
+        W_t.leftCols<N>().transpose() * adjoint + y.head<N>();
+    return G_t.leftCols<N>() * whitened;
+  }
 };
 
 Vector6 wrapped(Vector6 difference) {
@@ -48,9 +53,10 @@ void update(const Eigen::Matrix<double, N, 6>& H, const Eigen::Matrix<double, N,
   const Eigen::Matrix<double, N, 1> y = S.matrixL().solve(innovation);
   state.mean += W.transpose() * y;
   state.covariance -= W.transpose() * W;
-  about.G = S.matrixL().solve(H);
-  about.W = W;
-  about.y = y;
+  about.rows = N;
+  about.G_t.leftCols<N>() = S.matrixL().solve(H).transpose();
+  about.W_t.leftCols<N>() = W.transpose();
+  about.y.head<N>() = y;
 }
 
 /// Updates @p state by an image linearised at @p at. False when there is none from there.
@@ -82,14 +88,17 @@ bool forward(const EkfState& start, const std::vector<const EkfInput*>& inputs,
              const std::vector<Vector6>& trajectory, const LookModel& model,
              std::vector<EkfState>& filtered, std::vector<Linearised>& about) {
   filtered.clear();
-  about.assign(inputs.size(), {});
+  about.resize(inputs.size());
   for (std::size_t k = 0; k < inputs.size(); ++k) {
+    about[k].dx_dx.setIdentity();
+    about[k].rows = 0;
     filtered.push_back(k == 0 ? start : filtered.back());
     if (inputs[k] == nullptr) continue;
     const auto apply = [&](const auto& input) {
       return pass(input, trajectory[k], model, filtered[k], about[k]);
     };
-    if (!std::visit(apply, *inputs[k])) return false;
+    const auto* disc = std::get_if<DiscFix>(inputs[k]);
+    if (!(disc != nullptr ? apply(*disc) : std::visit(apply, *inputs[k]))) return false;
   }
   return true;
 }
@@ -102,7 +111,8 @@ std::vector<Vector6> backward(const EkfState& start, const std::vector<EkfState>
   for (std::size_t k = about.size(); k-- > 0;) {
     const Linearised& input = about[k];
     const EkfState& before = k == 0 ? start : filtered[k - 1];
-    adjoint -= input.G.transpose() * (input.W * adjoint + input.y);
+    if (input.rows == 3) adjoint -= input.pull<3>(adjoint);
+    if (input.rows == 6) adjoint -= input.pull<6>(adjoint);
     adjoint.head<3>() = (input.dx_dx.transpose() * adjoint.head<3>()).eval();
     smoothed[k] = before.mean - before.covariance * adjoint;
   }
