@@ -15,10 +15,11 @@ namespace {
 /// Pixels of the first curve's blue below the keys.
 int blue_pixels(const std::filesystem::path& file) {
   const vpImage<vpRGBa> image = imaging::colour_image(imaging::read_image(file));
+  const vpRGBa blue(0x00, 0x72, 0xb2);
   int count = 0;
   for (unsigned v = 82; v < image.getHeight(); ++v)
     for (unsigned u = 0; u < image.getWidth(); ++u)
-      if (image[v][u] == vpRGBa(0x00, 0x72, 0xb2)) ++count;
+      if (image[v][u].R == blue.R && image[v][u].G == blue.G && image[v][u].B == blue.B) ++count;
   return count;
 }
 
