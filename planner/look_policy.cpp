@@ -2,6 +2,7 @@
 
 #include "fuzzy_policy.hpp"
 #include "greedy_policy.hpp"
+#include "pattern_policy.hpp"
 
 #include <algorithm>
 
@@ -75,11 +76,12 @@ std::unique_ptr<LookPolicy> make_look_policy(const std::string& name,
   if (name == "nearest") return std::make_unique<NearestPolicy>();
   if (name == "greedy") return make_greedy_policy();
   if (name == "fuzzy") return make_fuzzy_policy(parts);
+  if (name == "pattern") return std::make_unique<PatternPolicy>();
   return nullptr;
 }
 
 std::vector<std::string> look_policy_names() {
-  return {"fixed", "random", "nearest", "greedy", "fuzzy"};
+  return {"fixed", "random", "nearest", "greedy", "fuzzy", "pattern"};
 }
 
 }  // namespace vigia::planner

@@ -6,6 +6,7 @@ const std::vector<Paper>& papers() {
   static const std::vector<Paper> all{
       {"armingol", "odometry against relocalisation with a pan-tilt-zoom camera",
        &reproduce_armingol},
+      {"quixote", "pose from one view of the nine-point colour pattern", &reproduce_quixote},
   };
   return all;
 }

@@ -29,5 +29,6 @@ const std::vector<Paper>& papers();
 
 // The experiments, each in a file of its own, reproduce_<name>.cpp.
 evaluation::PaperTable reproduce_armingol(const PaperOptions& options);
+evaluation::PaperTable reproduce_quixote(const PaperOptions& options);
 
 }  // namespace vigia::app

@@ -2,6 +2,8 @@
 
 #include <cassert>
 
+#include <Eigen/Cholesky>
+
 #include "vigia/localization/ekf_state.hpp"
 
 namespace vigia::evaluation {
@@ -35,6 +37,24 @@ bool PosteriorBound::update(const Pose2& truth, const Landmark& landmark,
   const Eigen::Matrix3d total = R + localization::reading_covariance(*image, noise_);
   const auto K = localization::kalman_gain(P_, H, total);
   P_ = localization::joseph_update(P_, H, K, total);
+  assert(P_.allFinite());
+  return true;
+}
+
+bool PosteriorBound::update(const Pose2& truth, const Landmark& landmark,
+                            const SensorSnapshot& sensor, const localization::LookBias& bias,
+                            const std::vector<localization::SeenPoint>& points) {
+  const auto image =
+      localization::measure_points(points, landmark.wMl, sensor, geometry_, truth, bias);
+  if (!image) return false;
+  if (sensor.look != look_) begin_look(sensor.look);
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+  const Matrix6 R = localization::reading_covariance(*image, noise_);
+  const Matrix6 HP = image->H * P_;
+  const Matrix6 K = (HP * image->H.transpose() + R).ldlt().solve(HP).transpose();
+  const Matrix6 I_KH = Matrix6::Identity() - K * image->H;
+  const Matrix6 updated = I_KH * P_ * I_KH.transpose() + K * R * K.transpose();
+  P_ = 0.5 * (updated + updated.transpose());
   assert(P_.allFinite());
   return true;
 }

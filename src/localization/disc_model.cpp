@@ -1,5 +1,7 @@
 #include "vigia/localization/disc_model.hpp"
 
+#include "camera_twists.hpp"
+
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
@@ -133,16 +135,6 @@ Eigen::Vector3d through_lens_tangent(const Lens& lens, const PlaneEllipse& image
 Disc in_camera(const Landmark& landmark, double radius, const Eigen::Isometry3d& wMc) {
   return {wMc.inverse() * landmark.centre_w(), wMc.linear().transpose() * landmark.normal_w(),
           radius};
-}
-
-/// Columns: the camera's twist (v, ω) in its own frame per x, y, θ, pan and tilt.
-Eigen::Matrix<double, 6, 5> camera_twists(const HeadGeometry& geometry, const HeadAngles& head,
-                                          const Eigen::Isometry3d& wMc) {
-  Eigen::Matrix<double, 6, 5> twists = Eigen::Matrix<double, 6, 5>::Zero();
-  twists.topLeftCorner<3, 2>() = wMc.linear().transpose().leftCols<2>();
-  twists.col(2) = camera_jacobian_base(geometry, head).col(1);
-  twists.rightCols<2>() = camera_jacobian_head(geometry, head);
-  return twists;
 }
 
 Ellipse to_pixels(const Intrinsics& intrinsics, const PlaneEllipse& seen) {

@@ -2,11 +2,11 @@
 
 #include "association.hpp"
 #include "look_smoother.hpp"
+#include "points_gate.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "vigia/localization/chi_square.hpp"
@@ -14,7 +14,8 @@
 namespace vigia::localization {
 namespace {
 
-constexpr int kDof = 3;  // of (u, v, s)
+constexpr int kDof = 3;        // of (u, v, s)
+constexpr int kPointsDof = 5;  // at most, of what points say about the state
 /// σ of ln √(ab) that teaches nothing: a factor of e^1000.
 constexpr double kUnmeasuredSize = 1e3;
 /// A look without an image for so long (s) is not linearised anew any more.
@@ -40,6 +41,14 @@ bool is_usable(const EllipseObservation& observation) {
          measured_disc_covariance(observation).allFinite();
 }
 
+bool is_usable(const PointsObservation& observation) {
+  return !observation.points.empty();
+}
+
+bool is_image(const EkfInput& input) {
+  return sensor_of(input) != nullptr;
+}
+
 }  // namespace
 
 EkfLocalizer::EkfLocalizer(LandmarkMap map, const HeadGeometry& geometry, const EkfParams& params,
@@ -49,7 +58,9 @@ EkfLocalizer::EkfLocalizer(LandmarkMap map, const HeadGeometry& geometry, const 
       params_(params),
       plan_(std::move(plan)),
       gate_(chi_square_quantile(params.gate_probability, kDof)),
-      nis_limit_(chi_square_quantile(1.0 - params.nis_probability, kDof * params.nis_looks)) {
+      nis_limits_(static_cast<std::size_t>(kPointsDof * params.nis_looks) + 1) {
+  for (std::size_t dof = 1; dof < nis_limits_.size(); ++dof)
+    nis_limits_[dof] = chi_square_quantile(1.0 - params.nis_probability, static_cast<double>(dof));
   reset(Stamp{}, Prior{});
 }
 
@@ -59,7 +70,7 @@ void EkfLocalizer::reset(Stamp stamp, const Prior& prior) {
   horizon_ = stamp;
   rejections_ = 0;
   rejected_looks_.clear();
-  first_nis_.clear();
+  first_of_looks_.clear();
   said_lost_ = false;
   refresh_belief();
 }
@@ -71,10 +82,10 @@ void EkfLocalizer::lose() {
 
 void EkfLocalizer::predict(const OdometryIncrement& increment) {
   assert(std::isfinite(increment.rot1 + increment.trans + increment.rot2));
-  const std::vector<DiscFix> ahead = drop_extrapolated();
+  const std::vector<EkfInput> ahead = drop_extrapolated();
   append(increment);
-  for (const DiscFix& fix : ahead) {
-    const std::vector<Event> later = roll_back(fix.sensor.stamp);
+  for (const EkfInput& fix : ahead) {
+    const std::vector<Event> later = roll_back(sensor_of(fix)->stamp);
     append(fix);
     for (const Event& event : later) append(event.input, event.extrapolated);
   }
@@ -83,42 +94,58 @@ void EkfLocalizer::predict(const OdometryIncrement& increment) {
 }
 
 UpdateResult EkfLocalizer::update(const Observation& observation) {
-  UpdateResult result;
-  if (const auto* disc = std::get_if<EllipseObservation>(&observation)) result = update_disc(*disc);
+  const bool usable = std::visit([](const auto& seen) { return is_usable(seen); }, observation);
+  UpdateResult result{UpdateStatus::degenerate, std::nullopt, 0.0, 0};
+  if (usable) result = take_in(observation);
   ++counts_[static_cast<std::size_t>(result.status)];
   refresh_belief();
   return result;
 }
 
-UpdateResult EkfLocalizer::update_disc(const EllipseObservation& observation) {
-  const Stamp stamp = observation.sensor.stamp;
-  if (!is_usable(observation)) return {UpdateStatus::degenerate, std::nullopt, 0.0, 0};
-  if (stamp < horizon_) return {UpdateStatus::too_late, std::nullopt, 0.0, 0};
-  const std::vector<Event> later = roll_back(stamp);
-  const bool first_of_look = state().look != observation.sensor.look;
-  const UpdateResult result = match(observation, with_look(state(), observation.sensor.look));
-  const Eigen::Matrix3d R = measurement_covariance(observation);
-  if (result.status == UpdateStatus::fused)
-    append(DiscFix{observation.sensor, *map_.find(*result.landmark), measured_disc(observation),
-                   params_.use_size ? R : without_size(R)});
+UpdateResult EkfLocalizer::take_in(const Observation& observation) {
+  const SensorSnapshot& sensor = vigia::sensor_of(observation);
+  if (sensor.stamp < horizon_) return {UpdateStatus::too_late, std::nullopt, 0.0, 0};
+  const std::vector<Event> later = roll_back(sensor.stamp);
+  const bool first_of_look = state().look != sensor.look;
+  const EkfState at = with_look(state(), sensor.look);
+  const Match found = std::visit([&](const auto& seen) { return match(seen, at); }, observation);
+  if (found.fix)
+    append(*found.fix);
   else if (!events_.empty() && events_.back().extrapolated)
     events_.pop_back();
   for (const Event& event : later) append(event.input, event.extrapolated);
-  watch_innovations(result, observation.sensor.look, first_of_look);
-  return result;
+  watch_innovations(found.result, sensor.look, first_of_look);
+  return found.result;
 }
 
-UpdateResult EkfLocalizer::match(const EllipseObservation& observation, const EkfState& at) const {
+EkfLocalizer::Match EkfLocalizer::match(const EllipseObservation& observation,
+                                        const EkfState& at) const {
   const AssociationModel model{map_, plan_ ? &*plan_ : nullptr, geometry_, params_.sensor, gate_};
-  const Association found = associate(model, at, observation, measured_disc(observation),
-                                      measurement_covariance(observation));
-  if (!found.any_image) return {UpdateStatus::degenerate, std::nullopt, 0.0, 0};
-  if (found.inside_gate.empty()) return {UpdateStatus::gated, std::nullopt, found.best_nis, kDof};
+  const Eigen::Vector3d z = measured_disc(observation);
+  const Eigen::Matrix3d R = measurement_covariance(observation);
+  const Association found = associate(model, at, observation, z, R);
+  if (!found.any_image) return {{UpdateStatus::degenerate, std::nullopt, 0.0, 0}, std::nullopt};
+  if (found.inside_gate.empty())
+    return {{UpdateStatus::gated, std::nullopt, found.best_nis, kDof}, std::nullopt};
   const Candidate& best = found.inside_gate.front();
   if (found.inside_gate.size() > 1 &&
       found.inside_gate[1].cost - best.cost < 2.0 * std::log(params_.ambiguity_ratio))
-    return {UpdateStatus::ambiguous, std::nullopt, best.nis, kDof};
-  return {UpdateStatus::fused, best.landmark->id, best.nis, kDof};
+    return {{UpdateStatus::ambiguous, std::nullopt, best.nis, kDof}, std::nullopt};
+  return {{UpdateStatus::fused, best.landmark->id, best.nis, kDof},
+          DiscFix{observation.sensor, *best.landmark, z, params_.use_size ? R : without_size(R)}};
+}
+
+EkfLocalizer::Match EkfLocalizer::match(const PointsObservation& observation,
+                                        const EkfState& at) const {
+  const Landmark* landmark = map_.find(observation.landmark);
+  if (landmark == nullptr) return {{UpdateStatus::gated, std::nullopt, 0.0, 0}, std::nullopt};
+  PointsFix fix{observation.sensor, *landmark,
+                seen_points(*landmark, observation, params_.centre_floor_px)};
+  if (fix.points.empty()) return {{UpdateStatus::degenerate, std::nullopt, 0.0, 0}, std::nullopt};
+  const UpdateResult result =
+      gate_points({geometry_, params_.sensor, params_.gate_probability}, at, fix);
+  if (result.status != UpdateStatus::fused) return {result, std::nullopt};
+  return {result, std::move(fix)};
 }
 
 void EkfLocalizer::append(const EkfInput& input, bool extrapolated) {
@@ -126,7 +153,7 @@ void EkfLocalizer::append(const EkfInput& input, bool extrapolated) {
   if (const auto* increment = std::get_if<OdometryIncrement>(&input))
     move_by(*increment, event);
   else
-    fuse(std::get<DiscFix>(input), event);
+    fuse(*sensor_of(input), event);
   assert(event.after.mean.allFinite() && event.after.covariance.allFinite());
   events_.push_back(std::move(event));
 }
@@ -138,16 +165,16 @@ void EkfLocalizer::move_by(const OdometryIncrement& increment, Event& event) con
   if ((increment.to - window.last_image).seconds() > kLookPause) window = {};
 }
 
-void EkfLocalizer::fuse(const DiscFix& fix, Event& event) const {
+void EkfLocalizer::fuse(const SensorSnapshot& sensor, Event& event) const {
   Window& window = event.window;
-  event.after = with_look(event.after, fix.sensor.look);
-  if (window.events == 0 || window.start.look != fix.sensor.look) {
+  event.after = with_look(event.after, sensor.look);
+  if (window.events == 0 || window.start.look != sensor.look) {
     window = {};
     window.start = event.after;
   }
   ++window.events;
   ++window.images;
-  window.last_image = fix.sensor.stamp;
+  window.last_image = sensor.stamp;
   auto smoothed = smooth_look(window.start, inputs_of_look(event), guess_of_look(event),
                               {geometry_, params_.sensor, params_.odometry}, params_.iterations,
                               params_.converged);
@@ -162,10 +189,9 @@ void EkfLocalizer::fuse(const DiscFix& fix, Event& event) const {
     window.start = smoothed->filtered[static_cast<std::size_t>(half) - 1];
     window.trajectory.erase(window.trajectory.begin(), window.trajectory.begin() + half);
     window.events = window.trajectory.size();
-    window.images =
-        1 + static_cast<int>(std::count_if(
-                events_.end() - static_cast<std::ptrdiff_t>(window.events - 1), events_.end(),
-                [](const Event& e) { return std::holds_alternative<DiscFix>(e.input); }));
+    window.images = 1 + static_cast<int>(std::count_if(
+                            events_.end() - static_cast<std::ptrdiff_t>(window.events - 1),
+                            events_.end(), [](const Event& e) { return is_image(e.input); }));
   }
 }
 
@@ -177,7 +203,7 @@ std::vector<const EkfInput*> EkfLocalizer::inputs_of_look(const Event& event) co
   int image = 0;
   for (auto it = events_.end() - static_cast<std::ptrdiff_t>(window.events - 1);
        it != events_.end(); ++it) {
-    const bool left_out = std::holds_alternative<DiscFix>(it->input) && image++ % stride != 0;
+    const bool left_out = is_image(it->input) && image++ % stride != 0;
     inputs.push_back(left_out ? nullptr : &it->input);
   }
   inputs.push_back(&event.input);
@@ -244,12 +270,12 @@ void EkfLocalizer::extrapolate(Stamp stamp) {
   append(motion, true);
 }
 
-std::vector<DiscFix> EkfLocalizer::drop_extrapolated() {
+std::vector<EkfInput> EkfLocalizer::drop_extrapolated() {
   const auto first = std::find_if(events_.begin(), events_.end(),
                                   [](const Event& event) { return event.extrapolated; });
-  std::vector<DiscFix> fixes;
+  std::vector<EkfInput> fixes;
   for (auto it = first; it != events_.end(); ++it)
-    if (const auto* fix = std::get_if<DiscFix>(&it->input)) fixes.push_back(*fix);
+    if (is_image(it->input)) fixes.push_back(it->input);
   events_.erase(first, events_.end());
   return fixes;
 }
@@ -279,13 +305,24 @@ void EkfLocalizer::watch_innovations(const UpdateResult& result, LookId look, bo
   if (result.status == UpdateStatus::fused) {
     rejections_ = 0;
     rejected_looks_.clear();
-    if (first_of_look) first_nis_.push_back(result.nis);
-    if (first_nis_.size() > static_cast<std::size_t>(params_.nis_looks)) first_nis_.pop_front();
+    if (first_of_look) first_of_looks_.push_back(result);
+    if (first_of_looks_.size() > static_cast<std::size_t>(params_.nis_looks))
+      first_of_looks_.pop_front();
   }
   const bool rejected = rejections_ >= params_.lost_rejections &&
                         rejected_looks_.size() >= static_cast<std::size_t>(params_.lost_looks);
-  const bool unlikely = std::accumulate(first_nis_.begin(), first_nis_.end(), 0.0) > nis_limit_;
-  said_lost_ = said_lost_ || rejected || unlikely;
+  said_lost_ = said_lost_ || rejected || innovations_are_unlikely();
+}
+
+bool EkfLocalizer::innovations_are_unlikely() const {
+  double sum = 0.0;
+  // Looks to come count as discs.
+  int dof = kDof * (params_.nis_looks - static_cast<int>(first_of_looks_.size()));
+  for (const UpdateResult& first : first_of_looks_) {
+    sum += first.nis;
+    dof += first.dof;
+  }
+  return sum > nis_limits_[static_cast<std::size_t>(dof)];
 }
 
 void EkfLocalizer::refresh_belief() {

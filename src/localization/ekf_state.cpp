@@ -22,6 +22,12 @@ OdometryIncrement part(const OdometryIncrement& u, double begin, double end) {
 
 }  // namespace
 
+const SensorSnapshot* sensor_of(const EkfInput& input) {
+  if (const auto* disc = std::get_if<DiscFix>(&input)) return &disc->sensor;
+  if (const auto* points = std::get_if<PointsFix>(&input)) return &points->sensor;
+  return nullptr;
+}
+
 EkfState initial_state(Stamp stamp, const Prior& prior, const SensorNoise& noise) {
   EkfState state;
   state.stamp = stamp;
@@ -76,6 +82,11 @@ Matrix36 state_jacobian(const DiscMeasurement& predicted) {
 Eigen::Matrix3d reading_covariance(const DiscMeasurement& predicted, const SensorNoise& noise) {
   const Eigen::Matrix<double, 3, 2> J = predicted.dz_dbias.leftCols<2>();
   return noise.reading_angle * noise.reading_angle * J * J.transpose();
+}
+
+Matrix6 reading_covariance(const PointsMeasurement& measured, const SensorNoise& noise) {
+  const Eigen::Matrix<double, 6, 2> J = measured.H.middleCols<2>(3);
+  return Matrix6::Identity() + noise.reading_angle * noise.reading_angle * J * J.transpose();
 }
 
 Matrix6 joseph_update(const Matrix6& covariance, const Matrix36& H,

@@ -11,9 +11,18 @@ namespace {
 /// W = G P and the whitened innovation y: the update is x + Wᵀ y, P − Wᵀ W.
 struct Linearised {
   Eigen::Matrix3d dx_dx = Eigen::Matrix3d::Identity();  ///< of an increment, on the pose
-  Matrix36 G = Matrix36::Zero();
-  Matrix36 W = Matrix36::Zero();
-  Eigen::Vector3d y = Eigen::Vector3d::Zero();
+  int rows = 0;  ///< components of the measurement: 3 of a disc, 6 of points, none otherwise
+  Matrix6 G_t;   ///< Gᵀ, in the first columns
+  Matrix6 W_t;
+  Vector6 y;
+
+  /// What the image adds to the adjoint, Gᵀ (W λ + y).
+  template <int N>
+  Vector6 pull(const Vector6& adjoint) const {
+    const Eigen::Matrix<double, N, 1> whitened =
+        W_t.leftCols<N>().transpose() * adjoint + y.head<N>();
+    return G_t.leftCols<N>() * whitened;
+  }
 };
 
 Vector6 wrapped(Vector6 difference) {
@@ -22,7 +31,7 @@ Vector6 wrapped(Vector6 difference) {
 }
 
 /// Moves @p state by an increment linearised at @p at.
-void pass(const OdometryIncrement& u, const Vector6& at, const LookModel& model, EkfState& state,
+bool pass(const OdometryIncrement& u, const Vector6& at, const LookModel& model, EkfState& state,
           Linearised& about) {
   const Pose2 pose = Pose2::from_vector(at.head<3>());
   about.dx_dx = move_jacobian_pose(pose, u);
@@ -30,6 +39,24 @@ void pass(const OdometryIncrement& u, const Vector6& at, const LookModel& model,
   state.covariance =
       propagate_covariance(state.covariance, pose, u, control_covariance(u, model.odometry));
   state.stamp = u.to;
+  return true;
+}
+
+/// Updates @p state by a measurement of N components, H and R at the point of linearisation,
+/// @p innovation about the state's mean.
+template <int N>
+void update(const Eigen::Matrix<double, N, 6>& H, const Eigen::Matrix<double, N, N>& R,
+            const Eigen::Matrix<double, N, 1>& innovation, EkfState& state, Linearised& about) {
+  const Eigen::Matrix<double, N, 6> HP = H * state.covariance;
+  const Eigen::LLT<Eigen::Matrix<double, N, N>> S(HP * H.transpose() + R);
+  const Eigen::Matrix<double, N, 6> W = S.matrixL().solve(HP);
+  const Eigen::Matrix<double, N, 1> y = S.matrixL().solve(innovation);
+  state.mean += W.transpose() * y;
+  state.covariance -= W.transpose() * W;
+  about.rows = N;
+  about.G_t.leftCols<N>() = S.matrixL().solve(H).transpose();
+  about.W_t.leftCols<N>() = W.transpose();
+  about.y.head<N>() = y;
 }
 
 /// Updates @p state by an image linearised at @p at. False when there is none from there.
@@ -39,34 +66,39 @@ bool pass(const DiscFix& fix, const Vector6& at, const LookModel& model, EkfStat
                                   Pose2::from_vector(at.head<3>()), {at(3), at(4), at(5)});
   if (!image) return false;
   const Matrix36 H = state_jacobian(*image);
-  const Matrix36 HP = H * state.covariance;
   const Eigen::Matrix3d R = fix.R + reading_covariance(*image, model.sensor);
-  const Eigen::LLT<Eigen::Matrix3d> S(HP * H.transpose() + R);
-  about.G = S.matrixL().solve(H);
-  about.W = S.matrixL().solve(HP);
-  about.y = S.matrixL().solve(fix.z - image->z - H * wrapped(state.mean - at));
-  state.mean += about.W.transpose() * about.y;
-  state.covariance -= about.W.transpose() * about.W;
+  update<3>(H, R, fix.z - image->z - H * wrapped(state.mean - at), state, about);
   state.stamp = std::max(state.stamp, fix.sensor.stamp);
   return true;
 }
 
-/// The filter linearised about @p trajectory. False when a disc has no image from there.
+bool pass(const PointsFix& fix, const Vector6& at, const LookModel& model, EkfState& state,
+          Linearised& about) {
+  const auto seen = measure_points(fix.points, fix.landmark.wMl, fix.sensor, model.geometry,
+                                   Pose2::from_vector(at.head<3>()), {at(3), at(4), at(5)});
+  if (!seen) return false;
+  update<6>(seen->H, reading_covariance(*seen, model.sensor),
+            seen->y - seen->H * wrapped(state.mean - at), state, about);
+  state.stamp = std::max(state.stamp, fix.sensor.stamp);
+  return true;
+}
+
+/// The filter linearised about @p trajectory. False when a landmark has no image from there.
 bool forward(const EkfState& start, const std::vector<const EkfInput*>& inputs,
              const std::vector<Vector6>& trajectory, const LookModel& model,
              std::vector<EkfState>& filtered, std::vector<Linearised>& about) {
   filtered.clear();
-  about.assign(inputs.size(), {});
+  about.resize(inputs.size());
   for (std::size_t k = 0; k < inputs.size(); ++k) {
+    about[k].dx_dx.setIdentity();
+    about[k].rows = 0;
     filtered.push_back(k == 0 ? start : filtered.back());
     if (inputs[k] == nullptr) continue;
     const auto apply = [&](const auto& input) {
       return pass(input, trajectory[k], model, filtered[k], about[k]);
     };
-    if (const auto* u = std::get_if<OdometryIncrement>(inputs[k]))
-      apply(*u);
-    else if (!apply(std::get<DiscFix>(*inputs[k])))
-      return false;
+    const auto* disc = std::get_if<DiscFix>(inputs[k]);
+    if (!(disc != nullptr ? apply(*disc) : std::visit(apply, *inputs[k]))) return false;
   }
   return true;
 }
@@ -79,7 +111,8 @@ std::vector<Vector6> backward(const EkfState& start, const std::vector<EkfState>
   for (std::size_t k = about.size(); k-- > 0;) {
     const Linearised& input = about[k];
     const EkfState& before = k == 0 ? start : filtered[k - 1];
-    adjoint -= input.G.transpose() * (input.W * adjoint + input.y);
+    if (input.rows == 3) adjoint -= input.pull<3>(adjoint);
+    if (input.rows == 6) adjoint -= input.pull<6>(adjoint);
     adjoint.head<3>() = (input.dx_dx.transpose() * adjoint.head<3>()).eval();
     smoothed[k] = before.mean - before.covariance * adjoint;
   }

@@ -32,7 +32,7 @@ struct SmoothedLook {
 ///
 /// @p guess is the first trajectory: the mean before each input. At most @p iterations passes,
 /// until one moves the trajectory by less than @p converged (m, rad).
-/// Nothing comes back when a disc has no image from the trajectory.
+/// Nothing comes back when a landmark has no image from the trajectory.
 std::optional<SmoothedLook> smooth_look(const EkfState& start,
                                         const std::vector<const EkfInput*>& inputs,
                                         std::vector<Vector6> guess, const LookModel& model,

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "vigia/core/pose.hpp"
 #include "vigia/core/stamp.hpp"
@@ -21,6 +23,12 @@ struct PoseHypothesis {
   double weight = 1.0;
 };
 
+/// A pose in space. Covariance of (δp, δφ) in world axes: p + δp, Exp(δφ) · R.
+struct SpatialPose {
+  Eigen::Isometry3d wMr = Eigen::Isometry3d::Identity();
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+};
+
 /// Where a localizer believes the robot is: planar pose with covariance of (x, y, θ).
 struct Belief {
   Stamp stamp;
@@ -28,6 +36,7 @@ struct Belief {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   BeliefStatus status = BeliefStatus::tracking;
   std::vector<PoseHypothesis> hypotheses;  ///< empty unless ambiguous
+  std::optional<SpatialPose> in_space;     ///< from methods that measure it
 
   /// √λ_max of the position covariance, metres: what the uncertainty limits compare.
   double position_sigma() const;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "vigia/core/head.hpp"
@@ -9,6 +11,7 @@
 #include "vigia/core/pose.hpp"
 #include "vigia/core/sensor_noise.hpp"
 #include "vigia/localization/disc_model.hpp"
+#include "vigia/localization/points_model.hpp"
 
 namespace vigia::evaluation {
 
@@ -33,6 +36,12 @@ class PosteriorBound {
   /// the disc has no image from there.
   bool update(const Pose2& truth, const Landmark& landmark, const SensorSnapshot& sensor,
               const localization::LookBias& bias, const Eigen::Matrix3d& R);
+
+  /// Takes in one image of a pattern or tag, of which @p points were seen (their covariances count,
+  /// not their pixels).
+  bool update(const Pose2& truth, const Landmark& landmark, const SensorSnapshot& sensor,
+              const localization::LookBias& bias,
+              const std::vector<localization::SeenPoint>& points);
 
   /// The bound on the covariance of (x, y, θ).
   Eigen::Matrix3d covariance() const { return P_.topLeftCorner<3, 3>(); }

@@ -21,8 +21,8 @@ struct EkfParams {
   double gate_probability = 0.999;
   /// An observation is ambiguous unless the best landmark is so many times likelier than the next.
   double ambiguity_ratio = 20.0;
-  /// σ of what the disc's model leaves out, white per frame, added to the tracker's covariance:
-  /// centre in px, and relative size.
+  /// σ of what the landmark's model leaves out, white per frame, added to the tracker's covariance:
+  /// a disc's centre or a point in px, and a disc's relative size.
   double centre_floor_px = 0.002;
   double size_floor = 5e-5;
   /// Whether the disc's apparent size teaches the filter. Without it only the direction does, as in
@@ -59,8 +59,9 @@ struct EkfParams {
 /// needed), updates, and repeats what came after. An observation ahead of the odometry is fused at
 /// a state extrapolated at the last rates, and again when the odometry has arrived.
 ///
-/// Discs look all alike: the landmark that a look expects has no privilege over any other. What is
-/// gated, ambiguous or otherwise not fused is counted.
+/// Discs look all alike: the landmark that a look expects has no privilege over any other. Patterns
+/// and tags say who they are: their points are gated against that landmark alone. What is gated,
+/// ambiguous or otherwise not fused is counted.
 class EkfLocalizer final : public Localizer {
  public:
   /// @p plan, when given, rules out landmarks behind walls.
@@ -97,19 +98,27 @@ class EkfLocalizer final : public Localizer {
     Window window;
   };
 
-  UpdateResult update_disc(const EllipseObservation& observation);
-  UpdateResult match(const EllipseObservation& observation, const EkfState& at) const;
+  /// What an image turned out to be, and how it is fused.
+  struct Match {
+    UpdateResult result;
+    std::optional<EkfInput> fix;
+  };
+
+  UpdateResult take_in(const Observation& observation);
+  Match match(const EllipseObservation& observation, const EkfState& at) const;
+  Match match(const PointsObservation& observation, const EkfState& at) const;
   void append(const EkfInput& input, bool extrapolated = false);
   void move_by(const OdometryIncrement& increment, Event& event) const;
-  void fuse(const DiscFix& fix, Event& event) const;
+  void fuse(const SensorSnapshot& sensor, Event& event) const;
   std::vector<const EkfInput*> inputs_of_look(const Event& event) const;
   std::vector<Vector6> guess_of_look(const Event& event) const;
   EkfState with_look(const EkfState& state, LookId look) const;
   std::vector<Event> roll_back(Stamp stamp);
   void extrapolate(Stamp stamp);
-  std::vector<DiscFix> drop_extrapolated();
+  std::vector<EkfInput> drop_extrapolated();
   void forget_old();
   void watch_innovations(const UpdateResult& result, LookId look, bool first_of_look);
+  bool innovations_are_unlikely() const;
   void refresh_belief();
   Eigen::Matrix3d measurement_covariance(const EllipseObservation& observation) const;
 
@@ -118,7 +127,7 @@ class EkfLocalizer final : public Localizer {
   EkfParams params_;
   std::optional<FloorPlan> plan_;
   double gate_;
-  double nis_limit_;
+  std::vector<double> nis_limits_;  ///< by the degrees of freedom of the sum
 
   EkfState base_;             ///< before the first of events_
   std::deque<Event> events_;  ///< in order of time
@@ -128,7 +137,7 @@ class EkfLocalizer final : public Localizer {
   std::array<int, 6> counts_{};
   int rejections_ = 0;
   std::set<LookId> rejected_looks_;
-  std::deque<double> first_nis_;
+  std::deque<UpdateResult> first_of_looks_;  ///< the first fused image of each of the last looks
   bool said_lost_ = false;
 };
 

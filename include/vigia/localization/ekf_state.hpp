@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <variant>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -12,6 +13,7 @@
 #include "vigia/core/odometry.hpp"
 #include "vigia/core/sensor_noise.hpp"
 #include "vigia/localization/disc_model.hpp"
+#include "vigia/localization/points_model.hpp"
 
 namespace vigia::localization {
 
@@ -41,8 +43,18 @@ struct DiscFix {
   Eigen::Matrix3d R;  ///< of z in the image; the white part of the readings comes on top
 };
 
+/// An image of a landmark that says who it is: a pattern's dots or a tag's corners.
+struct PointsFix {
+  SensorSnapshot sensor;
+  Landmark landmark;
+  std::vector<SeenPoint> points;
+};
+
 /// What moves the filter on.
-using EkfInput = std::variant<OdometryIncrement, DiscFix>;
+using EkfInput = std::variant<OdometryIncrement, DiscFix, PointsFix>;
+
+/// The snapshot of an image; nullptr for an increment.
+const SensorSnapshot* sensor_of(const EkfInput& input);
 
 /// The state at the start, with the biases of no look yet.
 EkfState initial_state(Stamp stamp, const Prior& prior, const SensorNoise& noise);
@@ -65,6 +77,10 @@ Matrix36 state_jacobian(const DiscMeasurement& predicted);
 
 /// Covariance that the white part of the head's readings adds to a measurement.
 Eigen::Matrix3d reading_covariance(const DiscMeasurement& predicted, const SensorNoise& noise);
+
+/// Covariance of a points measurement's error: that of the pixels, which is the unit matrix, and
+/// what the white part of the head's readings adds.
+Matrix6 reading_covariance(const PointsMeasurement& measured, const SensorNoise& noise);
 
 /// P − K S Kᵀ in Joseph's form, symmetrised. S = H P Hᵀ + R must be positive definite.
 Matrix6 joseph_update(const Matrix6& covariance, const Matrix36& H,

@@ -70,8 +70,8 @@ struct LookPolicyParts {
 };
 
 /// "fixed", "random" (visible ones), "nearest" (visible), "greedy" (least expected trace of the
-/// position's covariance after the look) or "fuzzy" (the perception plan of Armingol et al.). Null
-/// for another name.
+/// position's covariance after the look), "fuzzy" (the perception plan of Armingol et al.) or
+/// "pattern" (QUIXOTE's three criteria). Null for another name.
 std::unique_ptr<LookPolicy> make_look_policy(const std::string& name, const LookPolicyParts& parts);
 
 /// The names that make_look_policy knows.

@@ -1,0 +1,117 @@
+#include "vigia/localization/pattern_fix.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "vigia/localization/chi_square.hpp"
+#include "vigia/localization/ekf_state.hpp"
+
+namespace vigia::localization {
+namespace {
+
+/// The planar prior as a pose in space: on the floor and upright, which it takes for certain.
+SpatialPose on_the_floor(const Prior& prior) {
+  SpatialPose pose;
+  pose.wMr = to_isometry(prior.pose);
+  Eigen::Matrix<double, 6, 3> J = Eigen::Matrix<double, 6, 3>::Zero();
+  J(0, 0) = 1.0;
+  J(1, 1) = 1.0;
+  J(5, 2) = 1.0;
+  pose.covariance = J * prior.covariance * J.transpose();
+  return pose;
+}
+
+/// What is left of an increment after @p stamp.
+OdometryIncrement rest_of(const OdometryIncrement& u, Stamp stamp) {
+  if (stamp <= u.from) return u;
+  return second_part(u, (stamp - u.from).seconds() / (u.to - u.from).seconds());
+}
+
+}  // namespace
+
+PatternFixLocalizer::PatternFixLocalizer(LandmarkMap map, const HeadGeometry& geometry,
+                                         const PatternFixParams& params)
+    : map_(std::move(map)), geometry_(geometry), params_(params) {
+  reset(Stamp{}, Prior{});
+}
+
+void PatternFixLocalizer::reset(Stamp stamp, const Prior& prior) {
+  history_.clear();
+  start_ = stamp;
+  belief_ = Belief{};
+  believe(on_the_floor(prior), stamp);
+}
+
+void PatternFixLocalizer::believe(const SpatialPose& pose, Stamp stamp) {
+  const PlanarEstimate planar = seen_from_above(pose);
+  belief_.stamp = stamp;
+  belief_.pose = planar.pose;
+  belief_.covariance = planar.covariance;
+  belief_.in_space = pose;
+}
+
+void PatternFixLocalizer::predict(const OdometryIncrement& increment) {
+  // An image ahead of the odometry has moved the belief into this increment already.
+  if (belief_.stamp < increment.to)
+    believe(moved_by(*belief_.in_space, rest_of(increment, belief_.stamp), params_.odometry),
+            increment.to);
+  history_.push_back(increment);
+  const Stamp oldest = increment.to - Duration::from_seconds(params_.history_s);
+  while (history_.front().to < oldest) {
+    start_ = history_.front().to;
+    history_.pop_front();
+  }
+}
+
+UpdateResult PatternFixLocalizer::update(const Observation& observation) {
+  UpdateResult result;
+  if (const auto* points = std::get_if<PointsObservation>(&observation)) result = take_in(*points);
+  ++counts_[static_cast<std::size_t>(result.status)];
+  return result;
+}
+
+UpdateResult PatternFixLocalizer::take_in(const PointsObservation& observation) {
+  const Landmark* landmark = map_.find(observation.landmark);
+  if (landmark == nullptr) return {UpdateStatus::gated, std::nullopt, 0.0, 0};
+  if (!std::holds_alternative<PatternShape>(landmark->shape)) return {};
+  const SensorSnapshot& sensor = observation.sensor;
+  if (sensor.stamp < start_) return {UpdateStatus::too_late, landmark->id, 0.0, 0};
+  const PointsPose solved =
+      solve_points(seen_points(*landmark, observation), sensor.intrinsics, params_.pose);
+  if (!solved.has_pose() || solved.frontal) return {UpdateStatus::degenerate, landmark->id, 0.0, 0};
+  const FittedPose* fit = upright(solved, *landmark, sensor);
+  if (fit == nullptr) {
+    const bool both = solved.status == PointsPoseStatus::ambiguous;
+    return {both ? UpdateStatus::ambiguous : UpdateStatus::gated, landmark->id, solved.pose.chi2,
+            solved.pose.dof};
+  }
+  const UpdateResult result{UpdateStatus::fused, landmark->id, fit->chi2, fit->dof};
+  if (fit->dof > 0 && fit->chi2 > chi_square_quantile(params_.gate_probability, fit->dof))
+    return {UpdateStatus::gated, result.landmark, result.nis, result.dof};
+
+  SpatialPose pose = robot_in_space(*landmark, *fit, sensor, geometry_, params_.sensor);
+  Stamp stamp = sensor.stamp;
+  for (const OdometryIncrement& u : history_) {
+    if (u.to <= sensor.stamp) continue;
+    pose = moved_by(pose, rest_of(u, sensor.stamp), params_.odometry);
+    stamp = u.to;
+  }
+  belief_.status = BeliefStatus::tracking;
+  believe(pose, stamp);
+  return result;
+}
+
+const FittedPose* PatternFixLocalizer::upright(const PointsPose& solved, const Landmark& landmark,
+                                               const SensorSnapshot& sensor) const {
+  const auto stands = [&](const FittedPose& fit) {
+    const SpatialPose pose = robot_in_space(landmark, fit, sensor, geometry_, params_.sensor);
+    return pose.wMr.linear()(2, 2) > std::cos(params_.max_slope);
+  };
+  const bool pose_stands = stands(solved.pose);
+  if (solved.status != PointsPoseStatus::ambiguous) return pose_stands ? &solved.pose : nullptr;
+  const bool twin_stands = stands(*solved.twin);
+  if (pose_stands == twin_stands) return nullptr;
+  return pose_stands ? &solved.pose : &*solved.twin;
+}
+
+}  // namespace vigia::localization
