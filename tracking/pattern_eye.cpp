@@ -115,11 +115,8 @@ std::vector<PatternSight> PatternEye::find(const Frame& frame, const Window& win
 }
 
 // Whether a fitted dot is where and as large as the plane has it.
-bool PatternEye::fits(const DotFit& dot, const PlaneMap& map, const PatternShape& shape,
-                      int place) const {
-  const DotPlaces places = dot_places(shape);
-  const Eigen::Vector2d& p_l = places[static_cast<std::size_t>(place)];
-  const double radius = dot_radius(shape, place);
+bool PatternEye::fits(const DotFit& dot, const PlaneMap& map, const Eigen::Vector2d& p_l,
+                      double radius) const {
   const Eigen::Vector2d off = map.jacobian(p_l).inverse() * (dot.shape.centre - map(p_l));
   return off.norm() < parameters_.max_offset_ratio * radius &&
          std::abs(std::log(size_of(dot.shape) / size_of(map.circle(p_l, radius)))) < kMaxGrowth;
@@ -161,9 +158,11 @@ PatternSight PatternEye::measure(const PatternCandidate& candidate, const Window
   const auto map = fit_dots(candidate, frame, sight.dots);
   if (!map) return sight;
   sight.map = *map;
+  const DotPlaces places = dot_places(sight.shape);
   for (int i = 0; i < kPatternDots; ++i) {
     DotFit& dot = sight.dots[static_cast<std::size_t>(i)];
-    if (dot.status == DotStatus::whole && !fits(dot, sight.map, sight.shape, i))
+    if (dot.status == DotStatus::whole &&
+        !fits(dot, sight.map, places[static_cast<std::size_t>(i)], dot_radius(sight.shape, i)))
       dot.status = DotStatus::hidden;
   }
   read(sight);
@@ -283,7 +282,7 @@ std::optional<PatternSight> PatternEye::follow(const Frame& frame, const Pattern
   for (int i = 0; i < kPatternDots; ++i) {
     DotFit& dot = sight.dots[static_cast<std::size_t>(i)];
     if (dot.status != DotStatus::whole) continue;
-    if (!fits(dot, sight.map, sight.shape, i)) {
+    if (!fits(dot, sight.map, places[static_cast<std::size_t>(i)], dot_radius(sight.shape, i))) {
       dot.status = DotStatus::hidden;
       continue;
     }

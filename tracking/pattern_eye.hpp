@@ -47,7 +47,8 @@ class PatternEye {
   void list_points(PatternSight& sight) const;
   PlaneMap predict(const imaging::Frame& frame, const PatternSight& last,
                    const Eigen::Vector2d& motion);
-  bool fits(const DotFit& dot, const PlaneMap& map, const PatternShape& shape, int place) const;
+  bool fits(const DotFit& dot, const PlaneMap& map, const Eigen::Vector2d& p_l,
+            double radius) const;
 
   KnownCodes known_;
   PatternTrackerParameters parameters_;
