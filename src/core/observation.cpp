@@ -5,6 +5,8 @@
 namespace vigia {
 namespace {
 
+constexpr std::size_t kTagCorners = 4;
+
 /// How far the point of that label lies from the landmark's centre, as a share of extent_radius().
 double share_of_extent(int label, const Landmark& landmark) {
   const auto* pattern = std::get_if<PatternShape>(&landmark.shape);
@@ -13,7 +15,10 @@ double share_of_extent(int label, const Landmark& landmark) {
   return ring / extent_radius(landmark);
 }
 
+/// The centre-point of a pattern where it is seen, else the points' mean.
 Eigen::Vector2d centre_of(const std::vector<LabelledPoint>& points) {
+  for (const LabelledPoint& point : points)
+    if (points.size() > kTagCorners && point.label == 0) return point.uv;
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (const LabelledPoint& point : points) sum += point.uv;
   return sum / static_cast<double>(std::max<std::size_t>(points.size(), 1));

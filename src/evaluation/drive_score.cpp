@@ -34,6 +34,18 @@ int& count_of(LocalizerScore& score, localization::UpdateStatus status) {
   }
 }
 
+/// What the image taught at best.
+void bound_by(const Observation& observation, const Landmark& landmark,
+              const sim::RobotTruth& truth, PosteriorBound& bound) {
+  const auto& angle = truth.look_angle_error;
+  const localization::LookBias bias{angle.pan, angle.tilt, truth.look_log_focal_error};
+  const SensorSnapshot& sensor = sensor_of(observation);
+  if (const auto* disc = std::get_if<EllipseObservation>(&observation))
+    bound.update(truth.pose, landmark, sensor, bias, localization::measured_disc_covariance(*disc));
+  if (const auto* points = std::get_if<PointsObservation>(&observation))
+    bound.update(truth.pose, landmark, sensor, bias, localization::seen_points(landmark, *points));
+}
+
 }  // namespace
 
 struct DriveScorer::Impl {
@@ -87,14 +99,9 @@ void DriveScorer::Impl::score_localizer(const mission::Tick& tick, std::size_t i
   sum.bound.predict(tick.true_pose_before, u, control_covariance(u, setup->robot.robot.odometry));
   const bool fused = update && update->status == localization::UpdateStatus::fused;
   if (update) ++count_of(sum.score, update->status);
-  const auto* disc = std::get_if<EllipseObservation>(tick.observation);
-  if (fused && update->landmark && disc != nullptr) {
-    const sim::RobotTruth& truth = tick.truth_at_exposure;
-    const auto& angle = truth.look_angle_error;
-    sum.bound.update(truth.pose, *setup->world.landmarks.find(*update->landmark), disc->sensor,
-                     {angle.pan, angle.tilt, truth.look_log_focal_error},
-                     localization::measured_disc_covariance(*disc));
-  }
+  if (fused && update->landmark)
+    bound_by(*tick.observation, *setup->world.landmarks.find(*update->landmark),
+             tick.truth_at_exposure, sum.bound);
   const Eigen::Vector3d error = difference(belief.pose, tick.truth.pose);
   const double squared = error.head<2>().squaredNorm();
   const double nees = evaluation::nees({tick.truth.pose, belief.pose, belief.covariance});

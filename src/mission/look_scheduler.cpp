@@ -44,10 +44,9 @@ std::optional<LookScheduler::Decision> LookScheduler::choose(Stamp now, const Be
   std::vector<LandmarkId> excluded;
   for (const auto& failure : failures_) excluded.push_back(failure.first);
 
-  const auto choice = policy_->choose({now, belief, head, going.station_m, *path_,
-                                       setup_.world.landmarks, visibility_, information_, excluded,
-                                       head_model_, going.speed_mps, going.standing,
-                                       setup_.ekf.odometry});
+  const auto choice = policy_->choose(
+      {now, belief, head, going.station_m, *path_, setup_.world.landmarks, visibility_,
+       information_, excluded, head_model_, going.speed_mps, going.standing, setup_.ekf.odometry});
   if (!choice) return std::nullopt;
   GazeOrder order;
   order.look = next_look_++;
@@ -56,8 +55,14 @@ std::optional<LookScheduler::Decision> LookScheduler::choose(Stamp now, const Be
   order.issued = now;
   order.expires = now + Duration::from_seconds(setup_.look.timeout_s);
   order.dwell_s = setup_.look.dwell_s;
-  order.radius_px = setup_.look.radius_px;
+  order.radius_px = wanted_radius(*setup_.world.landmarks.find(choice->landmark));
   return Decision{order, choice->suitability, choice->reason};
+}
+
+/// Discs of one size; patterns and tags as large as the image takes them.
+double LookScheduler::wanted_radius(const Landmark& landmark) const {
+  if (disc_radius(landmark)) return setup_.look.radius_px;
+  return setup_.look.fill * 0.5 * setup_.robot.zoom.at(setup_.robot.zoom.min_zoom_mm()).height;
 }
 
 std::optional<GazeOrder> LookScheduler::prepare(Stamp now, const Belief& belief,

@@ -52,6 +52,8 @@ class LookScheduler {
   void fused(double travelled_m) { trigger_.looked(travelled_m); }
 
  private:
+  double wanted_radius(const Landmark& landmark) const;
+
   const MissionSetup& setup_;
   const InformationModel& information_;
   planner::Visibility visibility_;

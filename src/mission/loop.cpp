@@ -1,9 +1,9 @@
 #include "loop.hpp"
 
+#include "localizer_params.hpp"
+
 #include <algorithm>
 #include <cmath>
-
-#include "vigia/localization/odometry_localizer.hpp"
 
 namespace vigia::mission {
 namespace {
@@ -17,27 +17,10 @@ Pose2 draw_start(const MissionSetup& setup, std::uint64_t seed) {
   return {setup.start.x + dx, setup.start.y + dy, wrap_angle(setup.start.theta + dtheta)};
 }
 
-std::unique_ptr<localization::Localizer> make_localizer(const std::string& name,
-                                                        const MissionSetup& setup) {
-  if (name == "odometry")
-    return std::make_unique<localization::OdometryLocalizer>(setup.ekf.odometry);
-  return std::make_unique<localization::EkfLocalizer>(setup.world.landmarks, setup.robot.robot.head,
-                                                      setup.ekf, setup.world.plan);
-}
-
 /// How far from the principal point the feature lies, px.
 double off_centre(const Observation& observation) {
   const Intrinsics& camera = sensor_of(observation).intrinsics;
   return (image_extent(observation).centre - Eigen::Vector2d(camera.u0, camera.v0)).norm();
-}
-
-localization::RelocalizerParams relocalizer_params(const MissionSetup& setup) {
-  localization::RelocalizerParams params;
-  params.sensor = setup.ekf.sensor;
-  params.centre_floor_px = std::max(params.centre_floor_px, setup.ekf.centre_floor_px);
-  params.size_floor = std::max(params.size_floor, setup.ekf.size_floor);
-  params.explained_share = setup.recovery.explained_share;
-  return params;
 }
 
 }  // namespace
@@ -48,12 +31,11 @@ Loop::Loop(const MissionSetup& setup, std::uint64_t seed, const std::vector<List
       listeners_(listeners),
       simulator_(setup.robot, setup.world, setup.appearance, draw_start(setup, seed), seed,
                  setup.disturbances),
-      information_(setup.robot.robot.head, setup.robot.zoom,
-                   {setup.ekf.sensor, setup.look.radius_px}),
+      information_(landmark_information(setup)),
       relocalizer_(setup.world.landmarks, setup.world.plan, setup.robot.robot.head,
                    relocalizer_params(setup)),
       scheduler_(setup, information_, seed),
-      watcher_(setup.tracker, setup.robot.robot.head, setup.ekf.sensor),
+      watcher_(setup.tracker, setup.world.landmarks, setup.robot.robot.head, setup.ekf.sensor),
       gaze_(setup.robot.robot.head, setup.robot.robot.head_limits, setup.robot.zoom, setup.gaze),
       base_motion_({setup.robot.robot.base, setup.tick_s}),
       pilot_(setup.path, setup.world.plan, setup.robot.robot.radius_m, setup.robot.robot.base,
@@ -135,8 +117,7 @@ void Loop::tick() {
   timing_.step = step.elapsed_ms();
 
   std::optional<double> centring;
-  if (observation_ && acquired_)
-    centring = off_centre(*observation_);
+  if (observation_ && acquired_) centring = off_centre(*observation_);
   const Tick told{now_,
                   simulator_.robot().truth(),
                   shown.truth,

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "vigia/localization/disc_information.hpp"
+#include "vigia/localization/points_information.hpp"
 #include "vigia/localization/relocalizer.hpp"
 #include "vigia/mission/mission.hpp"
 #include "vigia/pilot/pilot.hpp"
@@ -39,7 +39,9 @@ class Loop {
   void recover(const imaging::Frame* frame);
   std::optional<servo::GazeSighting> sighting_now() const;
   void begin_recovery();
+  void read_code(const PointsObservation& seen);
   void relocalize();
+  void recovered(const Prior& here);
   BaseRates drive();
   void tell_pilot(const pilot::PilotOutput& output);
   void go_round(const pilot::PilotOutput& output);
@@ -63,7 +65,7 @@ class Loop {
   sim::Simulator simulator_;
   std::vector<std::unique_ptr<localization::Localizer>> localizers_;
   std::size_t primary_ = 0;
-  localization::DiscInformation information_;
+  localization::LandmarkInformation information_;
   localization::Relocalizer relocalizer_;
   LookScheduler scheduler_;
   Watcher watcher_;
@@ -100,6 +102,7 @@ class Loop {
 
   bool recovering_ = false;
   localization::Sweep sweep_;
+  std::optional<Prior> by_code_;  ///< what a pattern of the sweep said
 
   // What this tick tells its listeners.
   std::vector<LocalizerTick> localizer_ticks_;

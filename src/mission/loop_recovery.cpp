@@ -1,4 +1,9 @@
+#include "localizer_params.hpp"
 #include "loop.hpp"
+
+#include <utility>
+
+#include "vigia/localization/pattern_fix.hpp"
 
 namespace vigia::mission {
 
@@ -26,6 +31,7 @@ void Loop::recover(const imaging::Frame* frame) {
     const SensorSnapshot& sensor = delivered_->sensor;
     for (auto& seen : watcher_.survey(*frame, sensor)) sweep_.sightings.push_back(seen);
     sweep_.views.push_back(sensor);
+    for (const auto& seen : watcher_.survey_points(*frame, sensor)) read_code(seen);
     timing_.track += watch.elapsed_ms();
     if (!look_around_.next()) {
       relocalize();
@@ -37,24 +43,26 @@ void Loop::recover(const imaging::Frame* frame) {
   simulator_.robot().command(command_, look_around_.step(head_));
 }
 
+/// A pattern says who it is and where the robot stands: the surest one of a sweep counts.
+void Loop::read_code(const PointsObservation& seen) {
+  localization::PatternFixLocalizer fix(setup_.world.landmarks, setup_.robot.robot.head,
+                                        pattern_fix_params(setup_));
+  fix.reset(sensor_of(seen).stamp, {});
+  if (fix.update(seen).status != localization::UpdateStatus::fused) return;
+  const Prior found{fix.belief().pose, fix.belief().covariance};
+  if (!by_code_ || found.covariance.trace() < by_code_->covariance.trace()) by_code_ = found;
+}
+
 void Loop::relocalize() {
   const auto found = relocalizer_.solve(sweep_);
   tell("looked_around", {{"sightings", static_cast<double>(sweep_.sightings.size())},
                          {"hypotheses", static_cast<double>(found.hypotheses.size())}});
   sweep_ = {};
-  if (found.status == localization::RelocalizationStatus::found) {
-    const auto& best = found.hypotheses.front();
-    localizers_[primary_]->reset(now_, {best.pose, best.covariance});
-    recovering_ = false;
-    look_around_.found();
-    tell("recovered", {{"x_m", best.pose.x},
-                       {"y_m", best.pose.y},
-                       {"theta_rad", best.pose.theta},
-                       {"sigma_m", belief().position_sigma()}});
-    if (!replan(best.pose, "recovered")) {
-      tell("stuck", {}, {{"reason", "no route from where the robot found itself"}});
-      gave_up_ = Outcome::stuck;
-    }
+  std::optional<Prior> here = std::exchange(by_code_, std::nullopt);
+  if (!here && found.status == localization::RelocalizationStatus::found)
+    here = Prior{found.hypotheses.front().pose, found.hypotheses.front().covariance};
+  if (here) {
+    recovered(*here);
     return;
   }
   if (look_around_.sweeps() >= setup_.recovery.sweeps) {
@@ -64,6 +72,19 @@ void Loop::relocalize() {
   look_ = scheduler_.next_look();
   simulator_.robot().begin_look();
   look_around_.begin(head_);
+}
+
+void Loop::recovered(const Prior& here) {
+  localizers_[primary_]->reset(now_, here);
+  recovering_ = false;
+  look_around_.found();
+  tell("recovered", {{"x_m", here.pose.x},
+                     {"y_m", here.pose.y},
+                     {"theta_rad", here.pose.theta},
+                     {"sigma_m", belief().position_sigma()}});
+  if (replan(here.pose, "recovered")) return;
+  tell("stuck", {}, {{"reason", "no route from where the robot found itself"}});
+  gave_up_ = Outcome::stuck;
 }
 
 }  // namespace vigia::mission

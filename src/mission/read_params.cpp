@@ -113,6 +113,7 @@ void read_look(MapReader& reader, LookParams& params) {
   params.dwell_s = reader.number("dwell_s", {0.0, 60.0}, params.dwell_s);
   params.timeout_s = reader.number("timeout_s", {0.1, 600.0}, params.timeout_s);
   params.radius_px = reader.number("radius_px", {4.0, 200.0}, params.radius_px);
+  params.fill = reader.number("fill", {0.05, 0.95}, params.fill);
   params.exclude_s = reader.number("exclude_s", {0.0, 600.0}, params.exclude_s);
   params.rejections_to_drop =
       static_cast<int>(reader.integer("rejections_to_drop", {1, 1000}, params.rejections_to_drop));

@@ -71,12 +71,29 @@ void read_tracker(MapReader& mission, MissionSetup& setup) {
   setup.tracker = names[mission.choice("tracker", names, 0)];
 }
 
+bool is_pattern(const Landmark& landmark) {
+  return std::holds_alternative<PatternShape>(landmark.shape);
+}
+
 void read_localization(MapReader localization, MissionSetup& setup) {
-  static const std::vector<std::string> names{"ekf", "odometry"};
+  std::vector<std::string> names{"ekf", "odometry"};
+  const auto& landmarks = setup.world.landmarks.all();
+  if (std::any_of(landmarks.begin(), landmarks.end(), is_pattern))
+    names.emplace_back("pattern_fix");
   setup.primary = names[localization.choice("primary", names, 0)];
   setup.localizers = names;
   read_ekf(localization.map("ekf"), setup.robot.robot, setup.ekf);
   localization.finish();
+}
+
+/// Patterns are told apart by their colours.
+void check_colour(const MapReader& mission, const MissionSetup& setup) {
+  const auto& landmarks = setup.world.landmarks.all();
+  if (setup.robot.imaging.colour || std::none_of(landmarks.begin(), landmarks.end(), is_pattern))
+    return;
+  throw mission.error("robot",
+                      "the world has colour patterns, but the robot's camera sees grey: it needs "
+                      "camera.colour: true");
 }
 
 void check_fixed_landmark(const MapReader& look, const MissionSetup& setup) {
@@ -125,6 +142,7 @@ MissionSetup load_mission(const std::filesystem::path& file,
   MapReader look = mission.map("planner");
   read_look(look, setup.look);
   check_fixed_landmark(look, setup);
+  check_colour(mission, setup);
   read_gaze(mission.map("gaze"), setup.gaze);
   read_pilot(mission.map("pilot"), setup.robot, setup.pilot);
   read_recovery(mission.map("recovery"), setup.recovery);

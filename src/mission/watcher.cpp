@@ -1,26 +1,62 @@
 #include "watcher.hpp"
 
+#include <algorithm>
+
 #include "vigia/localization/disc_model.hpp"
+#include "vigia/localization/points_model.hpp"
 
 namespace vigia::mission {
 namespace {
 
+/// The circle that holds the landmark's features, as a disc.
+Landmark outline_of(const Landmark& landmark) {
+  return {landmark.id, landmark.wMl, DiscShape{extent_radius(landmark)}};
+}
+
+/// Of the landmark's outline.
 std::optional<Ellipse> expected_image(const SensorSnapshot& sensor, const Belief& belief,
                                       const Landmark& landmark, const HeadGeometry& head) {
   const Eigen::Isometry3d wMc = to_isometry(belief.pose) * camera_in_base(head, sensor.head);
-  return localization::disc_image(landmark, sensor.intrinsics, wMc);
+  return localization::disc_image(outline_of(landmark), sensor.intrinsics, wMc);
+}
+
+template <typename Shape>
+std::unique_ptr<tracking::PointTracker> tracker_of(const std::string& name,
+                                                   const LandmarkMap& map) {
+  const auto& all = map.all();
+  const bool needed = std::any_of(all.begin(), all.end(), [](const Landmark& landmark) {
+    return std::holds_alternative<Shape>(landmark.shape);
+  });
+  return needed ? tracking::make_point_tracker(name, {false, map}) : nullptr;
+}
+
+PointsObservation observed(const tracking::PointsFeature& feature, const SensorSnapshot& sensor,
+                           std::optional<LandmarkId> expected) {
+  return {sensor, expected, *feature.landmark, feature.points, feature.confidence};
 }
 
 }  // namespace
 
-Watcher::Watcher(const std::string& tracker, HeadGeometry head, SensorNoise noise)
-    : tracker_(tracking::make_ellipse_tracker(tracker)), head_(std::move(head)), noise_(noise) {}
+Watcher::Watcher(const std::string& tracker, const LandmarkMap& map, HeadGeometry head,
+                 SensorNoise noise)
+    : tracker_(tracking::make_ellipse_tracker(tracker)),
+      patterns_(tracker_of<PatternShape>("pattern", map)),
+      tags_(tracker_of<TagShape>("tag", map)),
+      head_(std::move(head)),
+      noise_(noise) {}
+
+tracking::PointTracker* Watcher::point_tracker(const Landmark& landmark) const {
+  if (std::holds_alternative<PatternShape>(landmark.shape)) return patterns_.get();
+  if (std::holds_alternative<TagShape>(landmark.shape)) return tags_.get();
+  return nullptr;
+}
 
 std::optional<tracking::EllipsePrediction> Watcher::predict(const SensorSnapshot& sensor,
                                                             const Belief& belief,
                                                             const Landmark& landmark) const {
   const auto image = expected_image(sensor, belief, landmark, head_);
-  const auto model = localization::predict_disc(landmark, sensor, head_, belief.pose, {});
+  const auto model =
+      localization::predict_disc(outline_of(landmark), sensor, head_, belief.pose, {});
   if (!image || !model) return std::nullopt;
   const double angle =
       noise_.look_angle * noise_.look_angle + noise_.reading_angle * noise_.reading_angle;
@@ -35,27 +71,70 @@ std::optional<tracking::EllipsePrediction> Watcher::predict(const SensorSnapshot
   return prediction;
 }
 
+std::optional<tracking::PointsPrediction> Watcher::predict_points(
+    const SensorSnapshot& sensor, const Belief& belief, const Landmark& landmark,
+    const tracking::EllipsePrediction& outline) const {
+  const Eigen::Isometry3d wMc = to_isometry(belief.pose) * camera_in_base(head_, sensor.head);
+  const Eigen::Isometry3d cMl = wMc.inverse(Eigen::Isometry) * landmark.wMl;
+  tracking::PointsPrediction prediction;
+  prediction.landmark = landmark.id;
+  for (const auto& point : localization::landmark_points(landmark)) {
+    const auto image = localization::predict_point(point, sensor.intrinsics, cMl);
+    if (image) prediction.points.push_back({point.label, image->uv, Eigen::Matrix2d::Identity()});
+  }
+  if (prediction.points.empty()) return std::nullopt;
+  prediction.covariance = outline.centre_covariance;
+  prediction.scale_sigma = outline.scale_sigma;
+  return prediction;
+}
+
 Sighting Watcher::watch(const imaging::Frame& frame, servo::TrackRequest request,
                         const SensorSnapshot& sensor, const Belief& belief,
                         const Landmark& landmark) {
-  const auto prediction = predict(sensor, belief, landmark);
+  const auto outline = predict(sensor, belief, landmark);
   Sighting sighting;
-  if (prediction) sighting.predicted = prediction->ellipse;
-  canvas_.attach(frame);
-  tracking::EllipseFeature feature;
-  if (request == servo::TrackRequest::track) {
-    if (prediction && settled_)
-      tracker_->expect_motion(Eigen::Vector2d(prediction->ellipse.u, prediction->ellipse.v) -
-                              *settled_);
-    feature = tracker_->track(canvas_);
-  } else if (prediction) {
-    feature = tracker_->acquire(canvas_, *prediction);
+  std::optional<Eigen::Vector2d> moved;
+  if (outline) {
+    sighting.predicted = outline->ellipse;
+    if (settled_) moved = Eigen::Vector2d(outline->ellipse.u, outline->ellipse.v) - *settled_;
   }
+  if (tracking::PointTracker* tracker = point_tracker(landmark)) {
+    const auto points = outline ? predict_points(sensor, belief, landmark, *outline) : std::nullopt;
+    const auto feature = watch_points(*tracker, frame, request, points, moved);
+    sighting.status = feature.status;
+    if (feature.status == tracking::FeatureStatus::found && feature.landmark)
+      sighting.observation = observed(feature, sensor, landmark.id);
+    return sighting;
+  }
+  const auto feature = watch_disc(frame, request, outline, moved);
   sighting.status = feature.status;
   if (feature.status == tracking::FeatureStatus::found)
     sighting.observation =
         EllipseObservation{sensor, landmark.id, feature.ellipse, feature.covariance};
   return sighting;
+}
+
+tracking::EllipseFeature Watcher::watch_disc(
+    const imaging::Frame& frame, servo::TrackRequest request,
+    const std::optional<tracking::EllipsePrediction>& prediction,
+    const std::optional<Eigen::Vector2d>& moved) {
+  canvas_.attach(frame);
+  if (request == servo::TrackRequest::track) {
+    if (moved) tracker_->expect_motion(*moved);
+    return tracker_->track(canvas_);
+  }
+  return prediction ? tracker_->acquire(canvas_, *prediction) : tracking::EllipseFeature{};
+}
+
+tracking::PointsFeature Watcher::watch_points(
+    tracking::PointTracker& tracker, const imaging::Frame& frame, servo::TrackRequest request,
+    const std::optional<tracking::PointsPrediction>& prediction,
+    const std::optional<Eigen::Vector2d>& moved) {
+  if (request == servo::TrackRequest::track) {
+    if (moved) tracker.expect_motion(*moved);
+    return tracker.track(frame);
+  }
+  return prediction ? tracker.acquire(frame, *prediction) : tracking::PointsFeature{};
 }
 
 void Watcher::settle(const SensorSnapshot& sensor, const Belief& belief, const Landmark& landmark) {
@@ -70,6 +149,18 @@ std::optional<ImageMotion> Watcher::motion(const SensorSnapshot& from, const Bel
   const auto second = expected_image(to, belief_to, landmark, head_);
   if (!first || !second) return std::nullopt;
   return ImageMotion{{second->u - first->u, second->v - first->v}, second->a / first->a};
+}
+
+std::vector<PointsObservation> Watcher::survey_points(const imaging::Frame& frame,
+                                                      const SensorSnapshot& sensor) {
+  std::vector<PointsObservation> observations;
+  for (tracking::PointTracker* tracker : {patterns_.get(), tags_.get()}) {
+    if (tracker == nullptr) continue;
+    for (const auto& feature : tracker->find_all(frame))
+      if (feature.status == tracking::FeatureStatus::found && feature.landmark)
+        observations.push_back(observed(feature, sensor, std::nullopt));
+  }
+  return observations;
 }
 
 std::vector<EllipseObservation> Watcher::survey(const imaging::Frame& frame,

@@ -10,6 +10,7 @@
 #include "vigia/imaging/canvas.hpp"
 #include "vigia/servo/gaze_controller.hpp"
 #include "vigia/tracking/ellipse_tracker.hpp"
+#include "vigia/tracking/point_tracker.hpp"
 
 namespace vigia::mission {
 
@@ -30,7 +31,8 @@ struct ImageMotion {
 /// belief and carries the expected motion from frame to frame.
 class Watcher {
  public:
-  Watcher(const std::string& tracker, HeadGeometry head, SensorNoise noise);
+  /// @p tracker: of discs. Patterns and tags of @p map have their own.
+  Watcher(const std::string& tracker, const LandmarkMap& map, HeadGeometry head, SensorNoise noise);
 
   /// Acquires or tracks @p landmark in @p frame. @p request is not none.
   Sighting watch(const imaging::Frame& frame, servo::TrackRequest request,
@@ -48,12 +50,29 @@ class Watcher {
   /// Every disc of a whole frame, as observations of unknown identity.
   std::vector<EllipseObservation> survey(const imaging::Frame& frame, const SensorSnapshot& sensor);
 
+  /// Every pattern and tag of the map that a whole frame shows.
+  std::vector<PointsObservation> survey_points(const imaging::Frame& frame,
+                                               const SensorSnapshot& sensor);
+
  private:
+  tracking::PointTracker* point_tracker(const Landmark& landmark) const;
+  tracking::EllipseFeature watch_disc(const imaging::Frame& frame, servo::TrackRequest request,
+                                      const std::optional<tracking::EllipsePrediction>& prediction,
+                                      const std::optional<Eigen::Vector2d>& moved);
+  static tracking::PointsFeature watch_points(
+      tracking::PointTracker& tracker, const imaging::Frame& frame, servo::TrackRequest request,
+      const std::optional<tracking::PointsPrediction>& prediction,
+      const std::optional<Eigen::Vector2d>& moved);
+  std::optional<tracking::PointsPrediction> predict_points(
+      const SensorSnapshot& sensor, const Belief& belief, const Landmark& landmark,
+      const tracking::EllipsePrediction& outline) const;
   std::optional<tracking::EllipsePrediction> predict(const SensorSnapshot& sensor,
                                                      const Belief& belief,
                                                      const Landmark& landmark) const;
 
   std::unique_ptr<tracking::EllipseTracker> tracker_;
+  std::unique_ptr<tracking::PointTracker> patterns_;  ///< null when the map has none
+  std::unique_ptr<tracking::PointTracker> tags_;      ///< null when the map has none
   HeadGeometry head_;
   SensorNoise noise_;
   imaging::Canvas canvas_;

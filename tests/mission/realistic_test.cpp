@@ -15,9 +15,9 @@ class Story : public Listener {
   void on_tick(const Tick& tick) override {
     if (tick.observation == nullptr) return;
     ++observations;
-    late_by = tick.now - tick.observation->sensor.stamp;
-    if (tick.truth_at_exposure.stamp != tick.observation->sensor.stamp) ++mismatched;
-    if (tick.observation->sensor.look != tick.look) ++of_another_look;
+    late_by = tick.now - sensor_of(*tick.observation).stamp;
+    if (tick.truth_at_exposure.stamp != sensor_of(*tick.observation).stamp) ++mismatched;
+    if (sensor_of(*tick.observation).look != tick.look) ++of_another_look;
   }
   std::map<std::string, int> count;
   int observations = 0;

@@ -26,11 +26,12 @@ struct LookParams {
   std::optional<LandmarkId> fixed_landmark;
   planner::LookTriggerParams trigger;
   planner::VisibilityParams visibility;
-  double period_s = 0.2;       ///< how often the planner is asked
-  double dwell_s = 1.0;        ///< how long a landmark is watched once tracked
-  double timeout_s = 8.0;      ///< an order without a feature by then has expired
-  double radius_px = 24.0;     ///< apparent semi-major axis that the zoom holds
-  double exclude_s = 5.0;      ///< how long a landmark that failed is left out
+  double period_s = 0.2;    ///< how often the planner is asked
+  double dwell_s = 1.0;     ///< how long a landmark is watched once tracked
+  double timeout_s = 8.0;   ///< an order without a feature by then has expired
+  double radius_px = 24.0;  ///< apparent semi-major axis of a disc that the zoom holds
+  double fill = 0.8;        ///< half the image's height that the zoom fills with a pattern or tag
+  double exclude_s = 5.0;   ///< how long a landmark that failed is left out
   int rejections_to_drop = 5;  ///< gated frames in a row after which a look is given up
   int failures_to_lose = 3;    ///< looks in a row that showed nothing, after which belief is lost
   planner::FuzzyRules rules;   ///< of the policy "fuzzy"
