@@ -7,7 +7,8 @@ namespace vigia::sim {
 namespace {
 
 constexpr int kAttempts = 1000;
-constexpr double kFromWall = 0.2;  // m, beyond the radius
+constexpr double kFromWall = 0.2;    // m, beyond the radius
+constexpr double kFromPeople = 0.5;  // m, beyond the radius
 
 }  // namespace
 
@@ -17,7 +18,7 @@ Kidnapping::Kidnapping(const KidnappingParams& params, std::uint64_t seed)
 }
 
 std::optional<Pose2> Kidnapping::due(Stamp now, const Pose2& from, double radius_m,
-                                     const FloorPlan& plan) {
+                                     const FloorPlan& plan, const Walkers* people) {
   if (done_ || now < when_) return std::nullopt;
   done_ = true;
   const Eigen::Vector2d low = plan.min_corner();
@@ -29,7 +30,10 @@ std::optional<Pose2> Kidnapping::due(Stamp now, const Pose2& from, double radius
     pose.x = random_.uniform(low.x(), high.x());
     pose.y = random_.uniform(low.y(), high.y());
     pose.theta = random_.uniform(-kPi, kPi);
-    const double room = std::min(plan.clearance(pose.position()) - radius_m - kFromWall,
+    double clearance = plan.clearance(pose.position()) - kFromWall;
+    if (people != nullptr)
+      clearance = std::min(clearance, people->clearance(pose.position()) - kFromPeople);
+    const double room = std::min(clearance - radius_m,
                                  (pose.position() - from.position()).norm() - params_.least_m);
     if (room <= best_room) continue;
     best = pose;

@@ -70,7 +70,8 @@ void Simulator::advance(Duration dt) {
 bool Simulator::kidnap() {
   if (!kidnapping_) return false;
   const RobotTruth& truth = robot_.truth();
-  const auto pose = kidnapping_->due(truth.stamp, truth.pose, setup_.robot.radius_m, world_.plan);
+  const auto pose = kidnapping_->due(truth.stamp, truth.pose, setup_.robot.radius_m, world_.plan,
+                                     walkers_ ? &*walkers_ : nullptr);
   if (pose) robot_.kidnap(*pose);
   return pose.has_value();
 }

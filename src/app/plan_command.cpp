@@ -8,10 +8,9 @@
 
 #include <fmt/format.h>
 
-#include "vigia/core/output_folder.hpp"
+#include "vigia/core/error.hpp"
 #include "vigia/mission/setup.hpp"
 #include "vigia/planner/look_policy.hpp"
-#include "vigia/report/plan_picture.hpp"
 
 namespace vigia::app {
 namespace {
@@ -42,21 +41,11 @@ void print(const PlanTable& table) {
   fmt::print("\n");
 }
 
-void draw(const PlanTable& table, const mission::MissionSetup& setup,
-          const std::filesystem::path& file) {
-  report::PlanPicture picture{setup.world};
-  picture.title = fmt::format("{}: perception plan, policy {}", table.mission, table.policy);
-  picture.subtitle = fmt::format("{:.1f} m in {} control areas; area: landmark and its suitability",
-                                 setup.path.length(), table.rows.size());
-  picture.path = setup.path;
-  picture.turn_points = table.turn_points;
-  picture.position_radius_m = setup.look.perception.path.radius_m;
-  for (const PlanRow& row : table.rows)
-    picture.areas.push_back({row.from_m, row.to_m, row.positions, row.chosen,
-                             row.chosen ? fmt::format("{}: L{}  {:.0f} %", row.area, *row.chosen,
-                                                      100 * row.suitability)
-                                        : fmt::format("{}: none", row.area)});
-  report::draw_plan(picture, file);
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure)
+    throw InputError("cannot make the folder " + folder.string() + ": " + failure.message());
 }
 
 int plan(PlanOptions options) {
@@ -65,11 +54,11 @@ int plan(PlanOptions options) {
   std::vector<PlanTable> tables;
   for (const std::string& policy : options.policies) tables.push_back(make_plan(setup, policy));
   if (!options.out.empty()) {
-    std::filesystem::create_directories(options.out);
+    make_folder(options.out);
     for (const PlanTable& table : tables)
-      draw(table, setup,
-           std::filesystem::path(options.out) /
-               (tables.size() == 1 ? "plan.png" : "plan-" + table.policy + ".png"));
+      draw_plan(table, setup,
+                std::filesystem::path(options.out) /
+                    (tables.size() == 1 ? "plan.png" : "plan-" + table.policy + ".png"));
   }
   if (options.json) {
     std::cout << plan_json(tables);

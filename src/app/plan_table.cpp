@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <map>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "vigia/core/error.hpp"
 #include "vigia/localization/disc_information.hpp"
 #include "vigia/planner/look_policy.hpp"
+#include "vigia/report/plan_picture.hpp"
 
 namespace vigia::app {
 namespace {
@@ -22,9 +24,9 @@ class PolicyAtPositions {
         head_(head),
         information_(head.geometry, head.zoom, {setup.ekf.sensor, setup.look.radius_px}),
         policy_(planner::make_look_policy(
-            policy, {setup.look.fixed_landmark, RandomStream(setup.seed, "look policy"),
-                     setup.world.landmarks, visibility, head, setup.look.rules,
-                     setup.look.perception})) {
+            policy,
+            {setup.look.fixed_landmark, RandomStream(setup.seed, "look policy"),
+             setup.world.landmarks, visibility, head, setup.look.rules, setup.look.perception})) {
     policy_->follow(setup.path);
   }
 
@@ -36,9 +38,9 @@ class PolicyAtPositions {
         Eigen::Vector3d(variance, variance, from_deg(1.0) * from_deg(1.0)).asDiagonal();
     const HeadReading head;
     const std::vector<LandmarkId> excluded;
-    const auto choice = policy_->choose(
-        {Stamp{}, belief, head, position.station_m, setup_.path, setup_.world.landmarks,
-         visibility_, information_, excluded, head_, 0.0, false, setup_.ekf.odometry});
+    const auto choice = policy_->choose({Stamp{}, belief, head, position.station_m, setup_.path,
+                                         setup_.world.landmarks, visibility_, information_,
+                                         excluded, head_, 0.0, false, setup_.ekf.odometry});
     return choice ? std::optional(choice->landmark) : std::nullopt;
   }
 
@@ -102,6 +104,23 @@ PlanTable make_plan(const mission::MissionSetup& setup, const std::string& polic
     if (policy != "fuzzy") take_choices(other, plan.areas[i], table.rows.back());
   }
   return table;
+}
+
+void draw_plan(const PlanTable& table, const mission::MissionSetup& setup,
+               const std::filesystem::path& file) {
+  report::PlanPicture picture{setup.world};
+  picture.title = fmt::format("{}: perception plan, policy {}", table.mission, table.policy);
+  picture.subtitle = fmt::format("{:.1f} m in {} control areas; area: landmark and its suitability",
+                                 setup.path.length(), table.rows.size());
+  picture.path = setup.path;
+  picture.turn_points = table.turn_points;
+  picture.position_radius_m = setup.look.perception.path.radius_m;
+  for (const PlanRow& row : table.rows)
+    picture.areas.push_back(
+        {row.from_m, row.to_m, row.positions, row.chosen,
+         row.chosen ? fmt::format("{}: L{}  {:.0f} %", row.area, *row.chosen, 100 * row.suitability)
+                    : fmt::format("{}: none", row.area)});
+  report::draw_plan(picture, file);
 }
 
 std::string plan_json(const std::vector<PlanTable>& tables) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +34,10 @@ struct PlanTable {
 /// uncertainty of the first limit, and the landmark named most often stands in the table; the
 /// preselected are all those that it named.
 PlanTable make_plan(const mission::MissionSetup& setup, const std::string& policy);
+
+/// Draws the plan on its floor: control areas, the chosen landmarks and the sight lines to them.
+void draw_plan(const PlanTable& table, const mission::MissionSetup& setup,
+               const std::filesystem::path& png);
 
 /// The tables as JSON.
 std::string plan_json(const std::vector<PlanTable>& tables);

@@ -40,6 +40,9 @@ class Loop {
   void recover(const imaging::Frame* frame);
   std::optional<servo::GazeSighting> sighting_now() const;
   void begin_recovery();
+  void begin_sweep();
+  void begin_stroll();
+  bool stroll_on();
   void read_code(const PointsObservation& seen);
   void relocalize();
   void recovered(const Prior& here);
@@ -105,6 +108,8 @@ class Loop {
 
   bool recovering_ = false;
   localization::Sweep sweep_;
+  std::optional<pilot::Pilot> stroll_;  ///< on the way to another place to look around from
+  Stamp stroll_end_;
   std::optional<Prior> by_code_;  ///< what a pattern of the sweep said
 
   // What this tick tells its listeners.

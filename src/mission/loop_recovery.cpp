@@ -1,12 +1,38 @@
 #include "localizer_params.hpp"
 #include "loop.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "vigia/localization/pattern_fix.hpp"
 
 namespace vigia::mission {
 namespace {
+
+constexpr double kStroll_s = 12.0;
+constexpr double kStrollLength_m = 1.5;
+constexpr double kStrollLeast_m = 0.3;
+constexpr double kStrollMargin_m = 0.7;  // from the robot's centre to what stands at the end
+
+/// The direction in which the ring has most room, and how far to go there; nothing when hemmed in.
+std::optional<RangeReading> widest_way(const RangeScan& scan) {
+  const auto& ring = scan.readings;
+  std::optional<RangeReading> widest;
+  double best = 0.0;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const double left = ring[(i + 1) % ring.size()].range_m;
+    const double right = ring[(i + ring.size() - 1) % ring.size()].range_m;
+    const double room =
+        std::min(std::min({left, ring[i].range_m, right}) - kStrollMargin_m, kStrollLength_m);
+    // Rather ahead than back to where it came from.
+    const double merit = room * (1.0 + 0.3 * std::cos(ring[i].bearing));
+    if (room < kStrollLeast_m || merit <= best) continue;
+    best = merit;
+    widest = RangeReading{ring[i].bearing, room, true};
+  }
+  return widest;
+}
 
 /// A belief that has been called into question: half a metre and 10° more than it says.
 Prior doubtful(const Belief& belief) {
@@ -32,13 +58,16 @@ void Loop::begin_recovery() {
   recovering_ = true;
   failed_.clear();
   sweep_ = {};
-  look_ = scheduler_.next_look();
-  simulator_.robot().begin_look();
-  look_around_.begin(head_);
+  begin_sweep();
 }
 
 void Loop::recover(const imaging::Frame* frame) {
   command_ = {};
+  if (stroll_) {
+    if (stroll_on()) return;
+    stroll_.reset();
+    begin_sweep();
+  }
   // The frame must have been exposed at this stop, standing still.
   const Stamp exposed = frame != nullptr ? delivered_->sensor.stamp : Stamp{};
   if (look_around_.ready(now_, head_, exposed)) {
@@ -82,12 +111,45 @@ void Loop::relocalize() {
     return;
   }
   if (look_around_.sweeps() >= setup_.recovery.sweeps) {
+    tell("stuck", {}, {{"reason", "looked around in vain"}});
     gave_up_ = Outcome::stuck;
     return;
   }
+  begin_stroll();
+  if (!stroll_) begin_sweep();
+}
+
+void Loop::begin_sweep() {
   look_ = scheduler_.next_look();
   simulator_.robot().begin_look();
   look_around_.begin(head_);
+}
+
+/// Where too little is seen, another place may show more: some steps to where the ring has most
+/// room, by odometry alone.
+void Loop::begin_stroll() {
+  const RangeScan scan = simulator_.scan();
+  const auto way = widest_way(scan);
+  if (!way) return;
+  const Eigen::Vector2d from = belief().pose.position();
+  const double heading = belief().pose.theta + way->bearing;
+  const Eigen::Vector2d to =
+      from + way->range_m * Eigen::Vector2d(std::cos(heading), std::sin(heading));
+  stroll_.emplace(Path({from, to}), setup_.world.plan, setup_.robot.robot.radius_m,
+                  setup_.robot.robot.base, setup_.pilot);
+  stroll_end_ = now_ + Duration::from_seconds(kStroll_s);
+  tell("stroll", {{"length_m", way->range_m}});
+}
+
+bool Loop::stroll_on() {
+  if (now_ >= stroll_end_) return false;
+  const RangeScan scan = simulator_.scan();
+  const auto output = stroll_->step({now_, odometry_, belief(), &scan, false});
+  const bool under_way =
+      output.status != pilot::PilotStatus::arrived && output.status != pilot::PilotStatus::blocked;
+  command_ = under_way ? output.rates : BaseRates{};
+  simulator_.robot().command(command_, {});
+  return under_way;
 }
 
 void Loop::recovered(const Prior& here) {

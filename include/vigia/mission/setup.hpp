@@ -44,7 +44,7 @@ struct RecoveryParams {
   double tilt = from_deg(6.0);   ///< of the head during the sweep, rad
   double settle_s = 0.12;        ///< standing still before a picture counts
   double explained_share = 0.5;  ///< of the discs that a sweep shows, by the pose that is believed
-  int sweeps = 3;                ///< given up (outcome stuck) after so many without a result
+  int sweeps = 6;                ///< given up (outcome stuck) after so many without a result
 };
 
 /// A mission, validated.

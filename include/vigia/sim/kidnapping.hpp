@@ -8,6 +8,7 @@
 #include "vigia/core/random.hpp"
 #include "vigia/core/stamp.hpp"
 #include "vigia/sim/disturbances.hpp"
+#include "vigia/sim/walkers.hpp"
 
 namespace vigia::sim {
 
@@ -17,8 +18,9 @@ class Kidnapping {
   Kidnapping(const KidnappingParams& params, std::uint64_t seed);
 
   /// Where to put a robot of that radius that stands at @p from: once, when @p now has come to the
-  /// time; in a place as free as the building allows.
-  std::optional<Pose2> due(Stamp now, const Pose2& from, double radius_m, const FloorPlan& plan);
+  /// time; in a place as free as the building and the @p people in it allow.
+  std::optional<Pose2> due(Stamp now, const Pose2& from, double radius_m, const FloorPlan& plan,
+                           const Walkers* people = nullptr);
 
  private:
   KidnappingParams params_;
