@@ -26,8 +26,7 @@ double pan_distance(double wanted, double from, const HeadLimits& limits) {
 /// Pan of the head, within its range, that points at the landmark; nothing near a stop.
 std::optional<double> free_pan(const Landmark& landmark, const Pose2& pose, const HeadModel& head) {
   constexpr double kMargin = from_deg(6.0);
-  const HeadAngles aim =
-      aim_at(head.geometry, to_isometry(pose).inverse() * landmark.centre_w());
+  const HeadAngles aim = aim_at(head.geometry, to_isometry(pose).inverse() * landmark.centre_w());
   for (const double pan : {aim.pan, aim.pan - 2.0 * kPi, aim.pan + 2.0 * kPi})
     if (pan >= head.limits.pan_min + kMargin && pan <= head.limits.pan_max - kMargin) return pan;
   return std::nullopt;
@@ -36,8 +35,8 @@ std::optional<double> free_pan(const Landmark& landmark, const Pose2& pose, cons
 /// How far along the path the robot gets; its error across and in heading stays as it is.
 Pose2 moved_along(const LookContext& context, double advance_m) {
   const Pose2 here = pose_on_path(context.path, context.station_m);
-  const Pose2 there = pose_on_path(
-      context.path, std::min(context.station_m + advance_m, context.path.length()));
+  const Pose2 there =
+      pose_on_path(context.path, std::min(context.station_m + advance_m, context.path.length()));
   return compose(there, compose(inverse(here), context.belief.pose));
 }
 
@@ -45,8 +44,8 @@ Pose2 moved_along(const LookContext& context, double advance_m) {
 
 bool can_be_held(const Landmark& landmark, const Arrival& arrival, const LookContext& context) {
   if (!can_be_watched(landmark, context, arrival.pose)) return false;
-  const double advance = arrival.station_m - context.station_m +
-                         context.speed_mps * context.head_model.dwell_s;
+  const double advance =
+      arrival.station_m - context.station_m + context.speed_mps * context.head_model.dwell_s;
   const Pose2 end = advance > 0.0 ? moved_along(context, advance) : arrival.pose;
   const auto from = free_pan(landmark, arrival.pose, context.head_model);
   const auto to = free_pan(landmark, end, context.head_model);

@@ -52,10 +52,10 @@ void draw(const PlanTable& table, const mission::MissionSetup& setup,
   picture.turn_points = table.turn_points;
   picture.position_radius_m = setup.look.perception.path.radius_m;
   for (const PlanRow& row : table.rows)
-    picture.areas.push_back({row.from_m, row.to_m, row.positions, row.chosen,
-                             row.chosen ? fmt::format("{}: L{}  {:.0f} %", row.area, *row.chosen,
-                                                      100 * row.suitability)
-                                        : fmt::format("{}: none", row.area)});
+    picture.areas.push_back(
+        {row.from_m, row.to_m, row.positions, row.chosen,
+         row.chosen ? fmt::format("{}: L{}  {:.0f} %", row.area, *row.chosen, 100 * row.suitability)
+                    : fmt::format("{}: none", row.area)});
   report::draw_plan(picture, file);
 }
 

@@ -22,9 +22,9 @@ class PolicyAtPositions {
         head_(head),
         information_(head.geometry, head.zoom, {setup.ekf.sensor, setup.look.radius_px}),
         policy_(planner::make_look_policy(
-            policy, {setup.look.fixed_landmark, RandomStream(setup.seed, "look policy"),
-                     setup.world.landmarks, visibility, head, setup.look.rules,
-                     setup.look.perception})) {
+            policy,
+            {setup.look.fixed_landmark, RandomStream(setup.seed, "look policy"),
+             setup.world.landmarks, visibility, head, setup.look.rules, setup.look.perception})) {
     policy_->follow(setup.path);
   }
 
@@ -36,9 +36,9 @@ class PolicyAtPositions {
         Eigen::Vector3d(variance, variance, from_deg(1.0) * from_deg(1.0)).asDiagonal();
     const HeadReading head;
     const std::vector<LandmarkId> excluded;
-    const auto choice = policy_->choose(
-        {Stamp{}, belief, head, position.station_m, setup_.path, setup_.world.landmarks,
-         visibility_, information_, excluded, head_, 0.0, false, setup_.ekf.odometry});
+    const auto choice = policy_->choose({Stamp{}, belief, head, position.station_m, setup_.path,
+                                         setup_.world.landmarks, visibility_, information_,
+                                         excluded, head_, 0.0, false, setup_.ekf.odometry});
     return choice ? std::optional(choice->landmark) : std::nullopt;
   }
 

@@ -1,34 +1,33 @@
-#include "vigia/planner/fuzzy_engine.hpp"
-
 #include <ostream>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "vigia/core/error.hpp"
+#include "vigia/planner/fuzzy_engine.hpp"
 
 namespace vigia::planner {
 namespace {
 
 const std::string kSystem =
-    "Engine: e\n"                                      // 1
-    "InputVariable: x\n"                               // 2
-    "  range: 0 1\n"                                   // 3
-    "  lock-range: false\n"                            // 4
-    "  term: low Ramp 1 0\n"                           // 5
-    "  term: high Ramp 0 1\n"                          // 6
-    "OutputVariable: y\n"                              // 7
-    "  enabled: true\n"                                // 8
-    "  range: 0 1\n"                                   // 9
-    "  aggregation: Maximum\n"                         // 10
-    "  defuzzifier: Centroid 100\n"                    // 11
-    "  term: a Triangle 0 0.2 0.4\n"                   // 12
-    "  term: b Triangle 0.6 0.8 1\n"                   // 13
-    "RuleBlock: r\n"                                   // 14
-    "  conjunction: Minimum\n"                         // 15
-    "  implication: Minimum\n"                         // 16
-    "  rule: if x is low then y is a\n"                // 17
-    "  rule: if x is high then y is b with 0.5\n";     // 18
+    "Engine: e\n"                                   // 1
+    "InputVariable: x\n"                            // 2
+    "  range: 0 1\n"                                // 3
+    "  lock-range: false\n"                         // 4
+    "  term: low Ramp 1 0\n"                        // 5
+    "  term: high Ramp 0 1\n"                       // 6
+    "OutputVariable: y\n"                           // 7
+    "  enabled: true\n"                             // 8
+    "  range: 0 1\n"                                // 9
+    "  aggregation: Maximum\n"                      // 10
+    "  defuzzifier: Centroid 100\n"                 // 11
+    "  term: a Triangle 0 0.2 0.4\n"                // 12
+    "  term: b Triangle 0.6 0.8 1\n"                // 13
+    "RuleBlock: r\n"                                // 14
+    "  conjunction: Minimum\n"                      // 15
+    "  implication: Minimum\n"                      // 16
+    "  rule: if x is low then y is a\n"             // 17
+    "  rule: if x is high then y is b with 0.5\n";  // 18
 
 /// kSystem with one line put for another.
 struct Mistake {
@@ -68,8 +67,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "17:21: rule: found 'y', must be one of and, or, then"},
         Mistake{"if x is low", "if x is low and x is high or x is low",
                 "17:35: a rule joins by 'and' or by 'or', not by both: write two rules"},
-        Mistake{"then y is a", "then y is",
-                "17:9: the rule ends where a term must follow"},
+        Mistake{"then y is a", "then y is", "17:9: the rule ends where a term must follow"},
         Mistake{"with 0.5", "with 0", "18:39: weight: found '0', must lie in (0, 1]"},
         Mistake{"with 0.5", "with nan", "18:39: found 'nan', must be a finite number"},
         Mistake{"with 0.5", "with 0.5 or so", "18:43: rule: found 'or' after the rule's end"},
@@ -98,8 +96,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "3:12: found 'nan', must be a finite number"},
         Mistake{"range: 0 1\n  lock", "range: 0\n  lock",
                 "3:10: range: must be two numbers, low and high"},
-        Mistake{"range: 0 1\n  lock", "lock",
-                "2:1: InputVariable: the key 'range' is missing"},
+        Mistake{"range: 0 1\n  lock", "lock", "2:1: InputVariable: the key 'range' is missing"},
         Mistake{"lock-range: false", "lock-range: true",
                 "4:15: lock-range: found 'true', must be false (values outside the range would be "
                 "clamped in silence)"},
@@ -111,8 +108,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "8:12: enabled: found 'false', must be true (a variable that is switched off would "
                 "be left out in silence)"},
         Mistake{"term: high", "term: low", "6:9: the term 'low' of x is given twice"},
-        Mistake{"OutputVariable: y", "OutputVariable: x",
-                "7:17: the variable 'x' is given twice"},
+        Mistake{"OutputVariable: y", "OutputVariable: x", "7:17: the variable 'x' is given twice"},
         Mistake{"InputVariable: x", "InputVariable: is",
                 "2:16: found 'is', must be a name: letters, digits and underscores, none of the "
                 "rules' own words"},
@@ -147,16 +143,15 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     OfTheFile, FllMistake,
-    testing::Values(
-        Mistake{"Engine: e\n", "", "1:1: the section 'Engine' is missing"},
-        Mistake{"Engine: e\n", "name: e\n",
-                "1:1: found the key 'name' before the first section 'Engine: name'"},
-        Mistake{"  range: 0 1\n  lock", "  range 0 1\n  lock",
-                "3:1: found 'range 0 1', must be 'key: value'"},
-        Mistake{"RuleBlock: r\n", "RuleBlock: r\nRuleBlock: s\n",
-                "15:1: a second RuleBlock; there must be exactly one"},
-        Mistake{"Engine: e\n", "Engine: e\a\n",
-                "1:1: found a control character, must be plain text"}));
+    testing::Values(Mistake{"Engine: e\n", "", "1:1: the section 'Engine' is missing"},
+                    Mistake{"Engine: e\n", "name: e\n",
+                            "1:1: found the key 'name' before the first section 'Engine: name'"},
+                    Mistake{"  range: 0 1\n  lock", "  range 0 1\n  lock",
+                            "3:1: found 'range 0 1', must be 'key: value'"},
+                    Mistake{"RuleBlock: r\n", "RuleBlock: r\nRuleBlock: s\n",
+                            "15:1: a second RuleBlock; there must be exactly one"},
+                    Mistake{"Engine: e\n", "Engine: e\a\n",
+                            "1:1: found a control character, must be plain text"}));
 
 TEST(Fll, CommentsBlankLinesAndIndentationSayNothing) {
   std::string text = "# a comment\n\n" + kSystem;

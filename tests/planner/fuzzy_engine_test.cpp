@@ -14,8 +14,8 @@
 namespace vigia::planner {
 namespace {
 
-using ::testing::ElementsAre;
 using test::Mamdani;
+using ::testing::ElementsAre;
 
 /// A system with every shape, both joints, negation and weights.
 std::string system_with(const std::string& conjunction, const std::string& disjunction,
@@ -63,9 +63,9 @@ TEST(FuzzyEngine, AgreesWithAnIndependentMamdaniForEveryShapeAndOperator) {
     for (const char* disjunction : {"Maximum", "AlgebraicSum"})
       for (const char* implication : {"Minimum", "AlgebraicProduct"})
         for (const char* aggregation : {"Maximum", "AlgebraicSum"})
-          EXPECT_LE(largest_difference(
-                        system_with(conjunction, disjunction, implication, aggregation)),
-                    1e-9)
+          EXPECT_LE(
+              largest_difference(system_with(conjunction, disjunction, implication, aggregation)),
+              1e-9)
               << conjunction << disjunction << implication << aggregation;
 }
 

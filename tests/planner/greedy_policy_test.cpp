@@ -44,9 +44,9 @@ TEST_F(GreedyPolicyTest, JudgesWhereTheRobotWillBeWhenTheHeadHasArrived) {
   choose();
   // Landmark 3 lies straight ahead but needs a longer focal length: 8 mm a second.
   const Pose2 at = room_.information.asked_at.at(3);
-  const double zoom = zoom_for(*room_.landmarks.find(3),
-                               room_.visibility.range(*room_.landmarks.find(3), at),
-                               room_.head_model);
+  const double zoom =
+      zoom_for(*room_.landmarks.find(3), room_.visibility.range(*room_.landmarks.find(3), at),
+               room_.head_model);
   EXPECT_NEAR(at.x, 4.0 + 0.3 * (zoom - 8.0) / 8.0, 1e-3);
   room_.speed_mps = 0.0;
   choose();

@@ -30,8 +30,7 @@ class LookPolicyTest : public ::testing::Test {
 TEST_F(LookPolicyTest, EveryNameMakesThePolicyOfThatName) {
   EXPECT_THAT(look_policy_names(),
               ElementsAre("fixed", "random", "nearest", "greedy", "fuzzy", "pattern"));
-  for (const std::string& name : look_policy_names())
-    EXPECT_EQ(make(name, 1)->name(), name);
+  for (const std::string& name : look_policy_names()) EXPECT_EQ(make(name, 1)->name(), name);
   EXPECT_EQ(make("clever", 1), nullptr);
 }
 
@@ -57,8 +56,7 @@ TEST_F(LookPolicyTest, FixedLooksAtItsLandmarkOrAtNothing) {
   EXPECT_EQ(choose(*policy), std::nullopt);
   EXPECT_EQ(choose(*make("fixed", 4, 1)), std::nullopt);
   EXPECT_EQ(choose(*make("fixed", 77, 1)), std::nullopt);
-  EXPECT_EQ(choose(*make("fixed", std::nullopt, 1)),
-            std::nullopt);
+  EXPECT_EQ(choose(*make("fixed", std::nullopt, 1)), std::nullopt);
 }
 
 TEST_F(LookPolicyTest, RandomDrawsTheVisibleOnesEquallyOften) {

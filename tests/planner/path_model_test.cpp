@@ -68,8 +68,8 @@ TEST_F(PathModelTest, AnAreaEndsWhereTheDistanceToALandmarkHasChangedTooMuch) {
 TEST_F(PathModelTest, TheAreasCoverThePathWithoutGaps) {
   const PathModel bent = model(Path({{1.0, 1.0}, {8.7, 1.0}, {8.7, 7.3}, {2.0, 9.0}}));
   EXPECT_EQ(bent.areas.front().from_m, 0.0);
-  EXPECT_NEAR(bent.areas.back().to_m, Path({{1.0, 1.0}, {8.7, 1.0}, {8.7, 7.3}, {2.0, 9.0}}).length(),
-              1e-9);
+  EXPECT_NEAR(bent.areas.back().to_m,
+              Path({{1.0, 1.0}, {8.7, 1.0}, {8.7, 7.3}, {2.0, 9.0}}).length(), 1e-9);
   for (std::size_t i = 1; i < bent.areas.size(); ++i)
     EXPECT_EQ(bent.areas[i].from_m, bent.areas[i - 1].to_m);
   for (std::size_t i = 0; i < bent.areas.size(); ++i)
