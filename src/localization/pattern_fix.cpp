@@ -1,7 +1,10 @@
 #include "vigia/localization/pattern_fix.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include <Eigen/Cholesky>
 
 #include "vigia/localization/chi_square.hpp"
 #include "vigia/localization/ekf_state.hpp"
@@ -19,6 +22,16 @@ SpatialPose on_the_floor(const Prior& prior) {
   J(5, 2) = 1.0;
   pose.covariance = J * prior.covariance * J.transpose();
   return pose;
+}
+
+/// What is left of the fit's χ² once the focal length is let off by its error, too.
+double scatter(const std::vector<SeenPoint>& points, const Intrinsics& intrinsics,
+               const FittedPose& fit, double focal_sigma) {
+  const auto at = fit_points(points, intrinsics, fit.cMl);
+  if (!at) return fit.chi2;
+  Eigen::Matrix<double, 7, 7> information = at->information;
+  information(6, 6) += 1.0 / std::max(focal_sigma * focal_sigma, 1e-18);
+  return at->chi2 - at->gradient.dot(information.ldlt().solve(at->gradient));
 }
 
 /// What is left of an increment after @p stamp.
@@ -76,8 +89,8 @@ UpdateResult PatternFixLocalizer::take_in(const PointsObservation& observation) 
   if (!std::holds_alternative<PatternShape>(landmark->shape)) return {};
   const SensorSnapshot& sensor = observation.sensor;
   if (sensor.stamp < start_) return {UpdateStatus::too_late, landmark->id, 0.0, 0};
-  const PointsPose solved =
-      solve_points(seen_points(*landmark, observation), sensor.intrinsics, params_.pose);
+  const auto points = seen_points(*landmark, observation);
+  const PointsPose solved = solve_points(points, sensor.intrinsics, params_.pose);
   if (!solved.has_pose() || solved.frontal) return {UpdateStatus::degenerate, landmark->id, 0.0, 0};
   const FittedPose* fit = upright(solved, *landmark, sensor);
   if (fit == nullptr) {
@@ -85,8 +98,9 @@ UpdateResult PatternFixLocalizer::take_in(const PointsObservation& observation) 
     return {both ? UpdateStatus::ambiguous : UpdateStatus::gated, landmark->id, solved.pose.chi2,
             solved.pose.dof};
   }
-  const UpdateResult result{UpdateStatus::fused, landmark->id, fit->chi2, fit->dof};
-  if (fit->dof > 0 && fit->chi2 > chi_square_quantile(params_.gate_probability, fit->dof))
+  const double chi2 = scatter(points, sensor.intrinsics, *fit, params_.sensor.look_focal);
+  const UpdateResult result{UpdateStatus::fused, landmark->id, chi2, fit->dof};
+  if (fit->dof > 0 && chi2 > chi_square_quantile(params_.gate_probability, fit->dof))
     return {UpdateStatus::gated, result.landmark, result.nis, result.dof};
 
   SpatialPose pose = robot_in_space(*landmark, *fit, sensor, geometry_, params_.sensor);

@@ -1,5 +1,6 @@
 #include "points_gate.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Cholesky>
@@ -10,6 +11,8 @@ namespace vigia::localization {
 namespace {
 
 constexpr int kSteps = 20;
+/// A turn about the camera with the pan turned back leaves no trace.
+constexpr int kMostRank = 5;
 constexpr double kConverged = 1e-7;  // m, rad
 
 struct Explanation {
@@ -38,7 +41,8 @@ std::optional<Explanation> explain(const PointsGate& gate, const EkfState& state
     found.mean = next;
     found.nis = innovation.dot(weighted);
     found.scatter = seen->chi2 - seen->y.squaredNorm();
-    found.rank = static_cast<int>((seen->H.rowwise().squaredNorm().array() > 0.0).count());
+    found.rank = std::min(
+        kMostRank, static_cast<int>((seen->H.rowwise().squaredNorm().array() > 0.0).count()));
     if (!(step < 1e6)) return std::nullopt;
     if (step < kConverged) return found;
   }

@@ -12,6 +12,9 @@ namespace vigia::localization {
 namespace {
 
 /// Below this cosine between normal and line of sight a landmark is edge on.
+/// Share of the greatest information below which a direction of the state is not measured: rounding
+/// leaves some 1e-13 of it, the weakest that points do measure is above 1e-9.
+constexpr double kNothing = 1e-11;
 constexpr double kEdgeOn = 1e-3;
 
 Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
@@ -71,7 +74,7 @@ void compress(const Eigen::Matrix<double, 6, 6>& A, const Eigen::Matrix<double, 
               PointsMeasurement& measurement) {
   const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> factor(A);
   const Eigen::Matrix<double, 6, 1> D = factor.vectorD();
-  const double least = 1e-13 * D.maxCoeff();
+  const double least = kNothing * D.maxCoeff();
   Eigen::Matrix<double, 6, 1> root;
   Eigen::Matrix<double, 6, 1> inverse_root;
   for (Eigen::Index i = 0; i < 6; ++i) {

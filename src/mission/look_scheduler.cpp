@@ -3,6 +3,11 @@
 #include <algorithm>
 
 namespace vigia::mission {
+namespace {
+
+constexpr int kMostDoublings = 4;
+
+}  // namespace
 
 LookScheduler::LookScheduler(const MissionSetup& setup, const InformationModel& information,
                              std::uint64_t seed)
@@ -37,12 +42,9 @@ planner::LookDemand LookScheduler::demand(Stamp now, const Belief& belief, doubl
 std::optional<LookScheduler::Decision> LookScheduler::choose(Stamp now, const Belief& belief,
                                                              const HeadReading& head,
                                                              const Going& going) {
-  const Duration exclusion = Duration::from_seconds(setup_.look.exclude_s);
-  failures_.erase(std::remove_if(failures_.begin(), failures_.end(),
-                                 [&](const auto& f) { return now - f.second > exclusion; }),
-                  failures_.end());
   std::vector<LandmarkId> excluded;
-  for (const auto& failure : failures_) excluded.push_back(failure.first);
+  for (const auto& [landmark, failure] : failures_)
+    if (now <= failure.until) excluded.push_back(landmark);
 
   const auto choice = policy_->choose(
       {now, belief, head, going.station_m, *path_, setup_.world.landmarks, visibility_,
@@ -77,7 +79,14 @@ std::optional<GazeOrder> LookScheduler::prepare(Stamp now, const Belief& belief,
 }
 
 void LookScheduler::failed(Stamp now, LandmarkId landmark) {
-  failures_.emplace_back(landmark, now);
+  Failure& failure = failures_[landmark];
+  const int doublings = std::min(failure.count++, kMostDoublings);
+  failure.until = now + Duration::from_seconds(setup_.look.exclude_s * (1 << doublings));
+}
+
+void LookScheduler::fused(double travelled_m, LandmarkId landmark) {
+  trigger_.looked(travelled_m);
+  failures_.erase(landmark);
 }
 
 }  // namespace vigia::mission

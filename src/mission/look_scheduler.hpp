@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -46,10 +47,11 @@ class LookScheduler {
   /// A number for an acquisition that no policy chose (a stop of the search).
   LookId next_look() { return next_look_++; }
 
-  /// The landmark could not be acquired or held: it is left out for a while.
+  /// The landmark could not be acquired or held: it is left out for a while, which doubles with
+  /// each failure until it is seen again.
   void failed(Stamp now, LandmarkId landmark);
-  /// An observation was fused.
-  void fused(double travelled_m) { trigger_.looked(travelled_m); }
+  /// An observation of the landmark was fused.
+  void fused(double travelled_m, LandmarkId landmark);
 
  private:
   double wanted_radius(const Landmark& landmark) const;
@@ -66,7 +68,11 @@ class LookScheduler {
   LookId next_look_ = 1;
   std::optional<Stamp> prepared_;
   std::optional<GazeOrder> waiting_;
-  std::vector<std::pair<LandmarkId, Stamp>> failures_;
+  struct Failure {
+    Stamp until;
+    int count = 0;
+  };
+  std::map<LandmarkId, Failure> failures_;
 };
 
 }  // namespace vigia::mission

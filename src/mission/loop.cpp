@@ -174,9 +174,9 @@ void Loop::localize(const Observation& observation) {
   const auto& result = *localizer_ticks_[primary_].update;
   if (result.status == localization::UpdateStatus::fused) {
     rejected_in_a_row_ = 0;
-    if (!look_fused_) scheduler_.fused(travelled_m_);
+    if (!look_fused_) scheduler_.fused(travelled_m_, gaze_.current()->landmark);
     look_fused_ = true;
-    failed_in_a_row_ = 0;
+    failed_.clear();
     return;
   }
   if (result.status == localization::UpdateStatus::unsupported) return;
@@ -192,7 +192,7 @@ void Loop::plan() {
   const Stopwatch watch;
   if (rejected_in_a_row_ >= setup_.look.rejections_to_drop)
     drop_look("the filter rejects what is tracked");
-  if (failed_in_a_row_ >= setup_.look.failures_to_lose) localizers_[primary_]->lose();
+  if (nothing_is_where_it_should_be()) localizers_[primary_]->lose();
   if (belief().status == BeliefStatus::lost) {
     begin_recovery();
     return;
@@ -200,31 +200,45 @@ void Loop::plan() {
   const auto demand =
       scheduler_.demand(now_, belief(), travelled_m_, pilot_.path().length() - pilot_.station());
   // A landmark that is not where the belief has it is reason enough to stand still.
-  const bool stop = demand == planner::LookDemand::stopped || failed_in_a_row_ > 0;
+  const bool uneasy = demand == planner::LookDemand::stopped || !failed_.empty();
+  const bool idle = gaze_.state() == GazeState::idle;
+  LookScheduler::Going going{pilot_.station(), odometry_.trans / dt_.seconds(), uneasy};
+  std::optional<LookScheduler::Decision> decision;
+  if (idle && (uneasy || demand != planner::LookDemand::none))
+    decision = scheduler_.choose(now_, belief(), head_, going);
+  // Where there is nothing to look at, standing helps nobody.
+  const bool stop = uneasy && (!idle || decision);
   tell_limits(demand, stop);
   stopped_to_look_ = stop;
-  const LookScheduler::Going going{pilot_.station(), odometry_.trans / dt_.seconds(), stop};
-  const bool wanted = stop || demand != planner::LookDemand::none;
-  if (wanted && gaze_.state() == GazeState::idle) {
-    if (const auto decision = scheduler_.choose(now_, belief(), head_, going)) {
-      const GazeOrder& order = decision->order;
-      look_ = order.look;
-      look_fused_ = false;
-      rejected_in_a_row_ = 0;
-      simulator_.robot().begin_look();
-      gaze_.order(order);
-      Numbers numbers{{"look", static_cast<double>(look_)},
-                      {"landmark", static_cast<double>(order.landmark)},
-                      {"sigma_m", belief().position_sigma()},
-                      {"travelled_m", travelled_m_}};
-      if (decision->suitability) numbers.emplace_back("suitability", *decision->suitability);
-      if (order.zoom_mm) numbers.emplace_back("zoom_mm", *order.zoom_mm);
-      tell("look", numbers, {{"reason", decision->reason}});
-    }
-  }
-  const bool idle = gaze_.state() == GazeState::idle;
-  gaze_.rest_at(idle ? scheduler_.prepare(now_, belief(), head_, going) : std::nullopt);
+  going.standing = stop;
+  if (decision) begin_look(*decision);
+  const bool waits = gaze_.state() == GazeState::idle;
+  gaze_.rest_at(waits ? scheduler_.prepare(now_, belief(), head_, going) : std::nullopt);
   timing_.plan += watch.elapsed_ms();
+}
+
+void Loop::begin_look(const LookScheduler::Decision& decision) {
+  const GazeOrder& order = decision.order;
+  look_ = order.look;
+  look_fused_ = false;
+  rejected_in_a_row_ = 0;
+  simulator_.robot().begin_look();
+  gaze_.order(order);
+  Numbers numbers{{"look", static_cast<double>(look_)},
+                  {"landmark", static_cast<double>(order.landmark)},
+                  {"sigma_m", belief().position_sigma()},
+                  {"travelled_m", travelled_m_}};
+  if (decision.suitability) numbers.emplace_back("suitability", *decision.suitability);
+  if (order.zoom_mm) numbers.emplace_back("zoom_mm", *order.zoom_mm);
+  tell("look", numbers, {{"reason", decision.reason}});
+}
+
+/// One landmark that fails again and again is missing; several are a sign of being elsewhere.
+bool Loop::nothing_is_where_it_should_be() const {
+  const auto enough = static_cast<std::size_t>(setup_.look.failures_to_lose);
+  if (failed_.size() < enough) return false;
+  const std::set<LandmarkId> different(failed_.begin(), failed_.end());
+  return different.size() > 1 || failed_.size() >= 2 * enough;
 }
 
 void Loop::tell_limits(planner::LookDemand demand, bool stop) {
@@ -298,7 +312,7 @@ std::optional<servo::GazeSighting> Loop::sighting_now() const {
 
 void Loop::note_failure(LandmarkId landmark) {
   scheduler_.failed(now_, landmark);
-  if (!look_fused_) ++failed_in_a_row_;
+  if (!look_fused_) failed_.push_back(landmark);
 }
 
 void Loop::tell_gaze(servo::GazeEvent event, LandmarkId landmark) {

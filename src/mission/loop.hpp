@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,8 @@ class Loop {
   bool replan(const Pose2& from, const std::string& reason,
               const std::vector<RoundObstacle>& others = {});
   void note_failure(LandmarkId landmark);
+  void begin_look(const LookScheduler::Decision& decision);
+  bool nothing_is_where_it_should_be() const;
   void drop_look(const std::string& reason);
   /// The story of the two limits: limit_1, stop, restart.
   void tell_limits(planner::LookDemand demand, bool stop);
@@ -97,7 +100,7 @@ class Loop {
   LookId look_ = 0;
   std::optional<Stamp> acquired_;
   int rejected_in_a_row_ = 0;
-  int failed_in_a_row_ = 0;  ///< looks that ended without anything fused
+  std::vector<LandmarkId> failed_;  ///< looks in a row that ended without anything fused
   bool look_fused_ = false;
 
   bool recovering_ = false;

@@ -6,6 +6,21 @@
 #include "vigia/localization/pattern_fix.hpp"
 
 namespace vigia::mission {
+namespace {
+
+/// A belief that has been called into question: half a metre and 10° more than it says.
+Prior doubtful(const Belief& belief) {
+  Prior prior{belief.pose, belief.covariance};
+  prior.covariance.diagonal() += Eigen::Vector3d(0.25, 0.25, from_deg(10.0) * from_deg(10.0));
+  return prior;
+}
+
+std::optional<Prior> best_of(const localization::Relocalization& found) {
+  if (found.status != localization::RelocalizationStatus::found) return std::nullopt;
+  return Prior{found.hypotheses.front().pose, found.hypotheses.front().covariance};
+}
+
+}  // namespace
 
 // The lost robot stands still and looks around; what it sees, all at once, tells where it is.
 
@@ -15,7 +30,7 @@ void Loop::begin_recovery() {
   request_ = servo::TrackRequest::none;
   acquired_.reset();
   recovering_ = true;
-  failed_in_a_row_ = 0;
+  failed_.clear();
   sweep_ = {};
   look_ = scheduler_.next_look();
   simulator_.robot().begin_look();
@@ -57,10 +72,11 @@ void Loop::relocalize() {
   const auto found = relocalizer_.solve(sweep_);
   tell("looked_around", {{"sightings", static_cast<double>(sweep_.sightings.size())},
                          {"hypotheses", static_cast<double>(found.hypotheses.size())}});
-  sweep_ = {};
+  const localization::Sweep sweep = std::exchange(sweep_, {});
   std::optional<Prior> here = std::exchange(by_code_, std::nullopt);
-  if (!here && found.status == localization::RelocalizationStatus::found)
-    here = Prior{found.hypotheses.front().pose, found.hypotheses.front().covariance};
+  if (!here) here = best_of(found);
+  // The alarm may have been a false one: what was believed helps where too little is seen.
+  if (!here) here = best_of(relocalizer_.solve(sweep, doubtful(belief())));
   if (here) {
     recovered(*here);
     return;

@@ -26,8 +26,8 @@ TEST_F(GreedyPolicyTest, TakesTheLandmarkThatLeavesTheLeastTrace) {
   EXPECT_EQ(choose(), 1);
   room_.belief.covariance = Eigen::Vector3d(0.0025, 0.01, 1e-4).asDiagonal();
   EXPECT_EQ(choose(), 2);
-  room_.information.information[3] = Eigen::Vector3d(500.0, 500.0, 0.0).asDiagonal();
-  EXPECT_EQ(choose(), 3);
+  room_.information.information[3] = Eigen::Vector3d(1000.0, 1000.0, 0.0).asDiagonal();
+  EXPECT_EQ(choose(), 3);  // 1/1400 + 1/1100 < 1/400 + 1/10100 m²
 }
 
 TEST_F(GreedyPolicyTest, PassesOverTheExcludedTheHiddenAndThoseWithoutAnImage) {
