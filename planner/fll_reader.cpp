@@ -53,8 +53,8 @@ class SectionReader {
   void only(const std::string& key, const std::string& value, const std::string& why) const {
     const FllLine* line = find(key);
     if (line != nullptr && line->value != value)
-      throw InputError(line->value_where, key + ": found '" + line->value + "', must be " + value +
-                                              " (" + why + ")");
+      throw InputError(line->value_where,
+                       key + ": found '" + line->value + "', must be " + value + " (" + why + ")");
   }
 
   std::string one_of(const std::string& key, const Names& values) const {
@@ -70,8 +70,9 @@ class SectionReader {
 };
 
 void check_name(const std::string& name, const SourceLocation& where) {
-  static const std::set<std::string> keywords{"if",  "is",  "then", "and",      "or",        "with",
-                                              "not", "any", "very", "somewhat", "extremely", "seldom"};
+  static const std::set<std::string> keywords{"if",   "is",       "then",      "and",
+                                              "or",   "with",     "not",       "any",
+                                              "very", "somewhat", "extremely", "seldom"};
   if (!is_fll_name(name) || keywords.count(name) != 0)
     throw InputError(where, "found '" + name +
                                 "', must be a name: letters, digits and underscores, none of "
@@ -128,15 +129,15 @@ FllVariable read_variable(const FllSection& section, const SectionReader& reader
   variable.low = read_fll_number(words[0]);
   variable.high = read_fll_number(words[1]);
   if (!(variable.low < variable.high))
-    throw InputError(range.value_where, "range: found " + range.value +
-                                            ", the first number must be below the second");
+    throw InputError(range.value_where,
+                     "range: found " + range.value + ", the first number must be below the second");
   for (const FllLine& line : section.lines) {
     if (line.key != "term") continue;
     FllTerm term = read_term(line);
     for (const FllTerm& other : variable.terms)
       if (other.name == term.name)
-        throw InputError(line.value_where, "the term '" + term.name + "' of " + variable.name +
-                                               " is given twice");
+        throw InputError(line.value_where,
+                         "the term '" + term.name + "' of " + variable.name + " is given twice");
     variable.terms.push_back(std::move(term));
   }
   if (variable.terms.empty())
@@ -155,8 +156,8 @@ void read_output(const FllSection& section, FllSystem& system) {
   const FllLine& line = reader.require("defuzzifier");
   const auto words = words_of(line);
   if (words.size() != 2 || words[0].text != "Centroid")
-    throw InputError(line.value_where,
-                     "defuzzifier: found '" + line.value + "', must be 'Centroid' and a resolution");
+    throw InputError(line.value_where, "defuzzifier: found '" + line.value +
+                                           "', must be 'Centroid' and a resolution");
   const double resolution = read_fll_number(words[1]);
   if (resolution < 10.0 || resolution > 10000.0 || resolution != std::floor(resolution))
     throw InputError(words[1].where, "defuzzifier: found '" + words[1].text +
@@ -187,14 +188,15 @@ class RuleReader {
       const std::string next = expect({"and", "or", "then"});
       if (next == "then") break;
       if (!joint.empty() && joint != next)
-        throw InputError(before(), "a rule joins by 'and' or by 'or', not by both: write two rules");
+        throw InputError(before(),
+                         "a rule joins by 'and' or by 'or', not by both: write two rules");
       joint = next;
     } while (true);
     rule.any = joint == "or";
     const FllWord& output = word("the output's name");
     if (output.text != system_.output.name)
-      throw InputError(output.where, "unknown output '" + output.text + "' (known: " +
-                                         system_.output.name + ")");
+      throw InputError(output.where,
+                       "unknown output '" + output.text + "' (known: " + system_.output.name + ")");
     expect({"is"});
     rule.then = index(names_of(system_.output.terms), "term", system_.output.name);
     read_weight(rule);
@@ -224,8 +226,8 @@ class RuleReader {
     const auto at = std::find(names.begin(), names.end(), found.text);
     if (at == names.end())
       throw InputError(found.where, "unknown " + what + " '" + found.text + "'" +
-                                        (of.empty() ? "" : " of " + of) + " (known: " + list(names) +
-                                        ")");
+                                        (of.empty() ? "" : " of " + of) +
+                                        " (known: " + list(names) + ")");
     return static_cast<std::size_t>(at - names.begin());
   }
 
@@ -268,8 +270,8 @@ void check_twin(const std::vector<FllRule>& rules, const FllRule& rule) {
   };
   const auto twin = std::find_if(rules.begin(), rules.end(), same);
   if (twin != rules.end())
-    throw InputError(rule.where, "a rule with the same condition was given before at " +
-                                     to_string(twin->where));
+    throw InputError(
+        rule.where, "a rule with the same condition was given before at " + to_string(twin->where));
 }
 
 void read_rules(const FllSection& section, FllSystem& system) {

@@ -93,8 +93,9 @@ void check_coverage(const FllSystem& system) {
     axes.push_back(samples(input));
     combinations *= axes.back().size();
     if (combinations * system.rules.size() > kMostWork)
-      throw InputError(system.rules.front().where,
-                       "the system has too many inputs and terms to check that its rules cover all");
+      throw InputError(
+          system.rules.front().where,
+          "the system has too many inputs and terms to check that its rules cover all");
   }
   std::vector<double> x(axes.size());
   for (std::size_t n = 0; n < combinations; ++n) {

@@ -49,7 +49,8 @@ void add_rules(const FllSystem& system, fl::Engine& engine) {
     try {
       made->load(&engine);
     } catch (const fl::Exception& error) {
-      throw InputError(rule.where, std::string("fuzzylite does not take the rule: ") + error.what());
+      throw InputError(rule.where,
+                       std::string("fuzzylite does not take the rule: ") + error.what());
     }
     if (!made->isLoaded()) throw InputError(rule.where, "fuzzylite dropped the rule");
   }
@@ -63,8 +64,7 @@ std::unique_ptr<fl::Engine> build(const FllSystem& system) {
     engine->addInputVariable(variable);
     for (const FllTerm& term : input.terms) variable->addTerm(make_term(term));
   }
-  auto* output =
-      new fl::OutputVariable(system.output.name, system.output.low, system.output.high);
+  auto* output = new fl::OutputVariable(system.output.name, system.output.low, system.output.high);
   engine->addOutputVariable(output);
   for (const FllTerm& term : system.output.terms) output->addTerm(make_term(term));
   output->setAggregation(make_snorm(system.aggregation));

@@ -10,9 +10,8 @@ constexpr double kStep_m = 0.02;
 constexpr double kTolerance_m = 1e-6;
 
 double turn_at(const Path& path, double s, double window) {
-  return std::abs(
-      wrap_angle(path.heading(std::min(s + 0.5 * window, path.length())) -
-                 path.heading(std::max(s - 0.5 * window, 0.0))));
+  return std::abs(wrap_angle(path.heading(std::min(s + 0.5 * window, path.length())) -
+                             path.heading(std::max(s - 0.5 * window, 0.0))));
 }
 
 /// Each stretch over which the heading turns too fast, by its middle.

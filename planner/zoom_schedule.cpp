@@ -42,9 +42,9 @@ std::vector<std::optional<std::size_t>> schedule_zoom(
     if (!areas[i].empty()) served.push_back(i);
   std::vector<std::vector<Reached>> table;
   for (std::size_t k = 0; k < served.size(); ++k)
-    table.push_back(k == 0 ? reach(areas[served[0]], {}, {}, cost_per_mm)
-                           : reach(areas[served[k]], areas[served[k - 1]], table[k - 1],
-                                   cost_per_mm));
+    table.push_back(k == 0
+                        ? reach(areas[served[0]], {}, {}, cost_per_mm)
+                        : reach(areas[served[k]], areas[served[k - 1]], table[k - 1], cost_per_mm));
 
   std::vector<std::optional<std::size_t>> taken(areas.size());
   if (served.empty()) return taken;

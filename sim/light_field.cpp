@@ -29,8 +29,10 @@ LightField::LightField(const LightParams& params, const FloorPlan& plan, std::ui
   full_.ambient = 0.0;
   full_.width_m = std::max(1.0, 0.3 * size.minCoeff());
   for (std::size_t i = 0; i < full_.lamps.size(); ++i) {
-    const double x = 0.25 + 0.5 * static_cast<double>(i % 2) + random.uniform(-0.1, 0.1);
-    const double y = 0.25 + 0.5 * static_cast<double>(i / 2) + random.uniform(-0.1, 0.1);
+    const std::size_t column = i % 2;
+    const std::size_t row = i / 2;
+    const double x = 0.25 + 0.5 * static_cast<double>(column) + random.uniform(-0.1, 0.1);
+    const double y = 0.25 + 0.5 * static_cast<double>(row) + random.uniform(-0.1, 0.1);
     full_.lamps[i] = {{low.x() + x * size.x(), low.y() + y * size.y(), plan.ceiling_m()},
                       random.uniform(0.6, 1.4)};
   }

@@ -129,14 +129,14 @@ Vector2d Walkers::escape(const Walker& walker, const Bystander& robot) const {
 }
 
 Vector2d Walkers::choose_velocity(const Walker& walker, const Bystander& robot) const {
-  const Vector2d stand = Vector2d::Zero();
+  Vector2d stand = Vector2d::Zero();
   const bool may_stand = room_on(walker, stand, robot, params_.distance_m) >= 0.0;
   if (walker.pause_s > 0.0 && may_stand) return stand;
   const Vector2d to_goal = walker.goal - walker.position;
   const double wanted =
       to_goal.norm() > 1e-6 ? std::atan2(to_goal.y(), to_goal.x()) : walker.heading;
   for (const double off : {0.0, 25.0, -25.0, 50.0, -50.0, 75.0, -75.0}) {
-    const Vector2d velocity = walker.pace * unit(wanted + from_deg(off));
+    Vector2d velocity = walker.pace * unit(wanted + from_deg(off));
     if (room_on(walker, velocity, robot, params_.distance_m) >= 0.0) return velocity;
   }
   return may_stand ? stand : escape(walker, robot);

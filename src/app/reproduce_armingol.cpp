@@ -41,6 +41,7 @@ using Part = double LocalizerScore::*;
 
 Estimate mean_of(const std::vector<DriveScore>& scores, const std::string& localizer, Part part) {
   std::vector<double> values;
+  values.reserve(scores.size());
   for (const auto& score : scores) values.push_back(score.localizers.at(localizer).*part);
   return evaluation::paired_difference(values, std::vector<double>(values.size(), 0.0));
 }

@@ -13,9 +13,7 @@ namespace vigia::evaluation {
 namespace {
 
 using localization::Ring;
-using localization::RingImage;
 using localization::RingMethod;
-using localization::RingPose;
 using localization::ViewParameters;
 
 bool from_below(const ViewParameters& view) {

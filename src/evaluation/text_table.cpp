@@ -36,7 +36,7 @@ std::string aligned_table(const TextRows& rows) {
       if (i == 0)
         text += cell + (widths.size() > 1 ? blanks : "");
       else
-        text += "  " + blanks + cell;
+        text.append("  ").append(blanks).append(cell);
     }
     text += '\n';
     if (r > 0) continue;

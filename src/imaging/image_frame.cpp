@@ -22,11 +22,13 @@ namespace {
 template <typename Pixel>
 void copy_window(const vpImage<Pixel>& image, const Window& window, Pixel* out,
                  std::ptrdiff_t stride) {
-  // vpRGBa copies pixel by pixel; its four bytes are all that it has.
+  // vpRGBa copies pixel by pixel: assign the bytes, which are all that it has, a row at a time.
   const std::size_t bytes = sizeof(Pixel) * static_cast<std::size_t>(window.width);
-  for (int row = 0; row < window.height; ++row)
-    std::memcpy(static_cast<void*>(out + row * stride),
-                image[static_cast<unsigned>(window.v + row)] + window.u, bytes);
+  for (int row = 0; row < window.height; ++row) {
+    const Pixel* from = image[static_cast<unsigned>(window.v + row)] + window.u;
+    std::copy_n(reinterpret_cast<const unsigned char*>(from), bytes,
+                reinterpret_cast<unsigned char*>(out + row * stride));
+  }
 }
 
 constexpr std::string_view kPngMagic("\x89PNG\r\n\x1a\n", 8);

@@ -28,6 +28,7 @@ std::vector<SeenPoint> points_of_look(const std::vector<LandmarkPoint>& model,
                                       const PointsInformationParams& params) {
   const double variance = params.pixel_sigma * params.pixel_sigma / params.frames_per_look;
   std::vector<SeenPoint> points;
+  points.reserve(model.size());
   for (const LandmarkPoint& point : model)
     points.push_back({point, Eigen::Vector2d::Zero(), Eigen::Matrix2d::Identity() / variance});
   return points;

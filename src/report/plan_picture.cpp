@@ -80,10 +80,9 @@ void draw_borders(const Sheet& sheet, const MapView& view, const PlanPicture& pl
 }
 
 void diamond(const Sheet& sheet, const Eigen::Vector2d& at) {
-  const std::vector<Eigen::Vector2d> corners{at + Eigen::Vector2d(0.0, -9.0),
-                                             at + Eigen::Vector2d(9.0, 0.0),
-                                             at + Eigen::Vector2d(0.0, 9.0),
-                                             at + Eigen::Vector2d(-9.0, 0.0)};
+  const std::vector<Eigen::Vector2d> corners{
+      at + Eigen::Vector2d(0.0, -9.0), at + Eigen::Vector2d(9.0, 0.0),
+      at + Eigen::Vector2d(0.0, 9.0), at + Eigen::Vector2d(-9.0, 0.0)};
   sheet.polyline(corners, true);
   sheet.fill(palette::kVermillion);
   sheet.polyline(corners, true);

@@ -47,10 +47,10 @@ inline std::vector<std::optional<PointsObservation>> points_of(const Drive& driv
   for (const DriveStep& step : drive.steps) {
     seen.emplace_back();
     if (step.seen)
-      seen.back() = observe_points(*map.find(*step.seen->expected), step.seen->sensor,
-                                   drive.geometry, to_isometry(step.pose), step.bias,
-                                   drive.noise.sensor.reading_angle, drive.noise.pixel_sigma,
-                                   random);
+      seen.back() =
+          observe_points(*map.find(*step.seen->expected), step.seen->sensor, drive.geometry,
+                         to_isometry(step.pose), step.bias, drive.noise.sensor.reading_angle,
+                         drive.noise.pixel_sigma, random);
   }
   return seen;
 }

@@ -119,8 +119,7 @@ TEST(PointsModel, PointsBehindTheCameraOrSeenFromTheBackHaveNoImage) {
 TEST(PointsModel, PointsThatCannotBeUsedAreLeftOut) {
   const Landmark landmark = test::pattern(1, 0.0, 0.0, 0.0, 0.0);
   RandomStream random(1, "unused");
-  PointsObservation seen =
-      test::observe_points(landmark, kLens, off_axis_pose(), 0.1, random);
+  PointsObservation seen = test::observe_points(landmark, kLens, off_axis_pose(), 0.1, random);
   seen.points[0].label = 17;
   seen.points[1].uv.x() = std::nan("");
   seen.points[2].covariance.setZero();

@@ -80,8 +80,7 @@ TEST(PointsPose, ThreePointsAreTooFewAndFourOnALineDegenerate) {
   seen.points = {all[0], all[1], all[2]};
   EXPECT_EQ(solve_points(seen_points(kPattern, seen), kWide).status, PointsPoseStatus::too_few);
   seen.points = {all[0], all[1], all[5], all[9], all[13]};  // first and fifth of both rings
-  EXPECT_EQ(solve_points(seen_points(kPattern, seen), kWide).status,
-            PointsPoseStatus::degenerate);
+  EXPECT_EQ(solve_points(seen_points(kPattern, seen), kWide).status, PointsPoseStatus::degenerate);
 }
 
 /// NEES of 6 degrees of freedom and χ² of the residuals over many noisy views.
@@ -90,8 +89,7 @@ struct Spread {
   double chi2_per_dof = 0.0;
 };
 
-Spread spread_of(const Landmark& landmark, const Eigen::Isometry3d& truth, double sigma,
-                 int runs) {
+Spread spread_of(const Landmark& landmark, const Eigen::Isometry3d& truth, double sigma, int runs) {
   RandomStream random(11, "noise");
   Spread spread;
   for (int i = 0; i < runs; ++i) {

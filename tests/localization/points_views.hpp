@@ -38,8 +38,8 @@ inline PointsObservation observe_points(const Landmark& landmark, const SensorSn
     const double du = sigma * random.normal();
     const double dv = sigma * random.normal();
     const double stated = sigma > 0.0 ? sigma * sigma : 1e-6;
-    observation.points.push_back({point.label, image->uv + Eigen::Vector2d(du, dv),
-                                  stated * Eigen::Matrix2d::Identity()});
+    observation.points.push_back(
+        {point.label, image->uv + Eigen::Vector2d(du, dv), stated * Eigen::Matrix2d::Identity()});
   }
   return observation;
 }

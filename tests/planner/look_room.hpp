@@ -31,14 +31,15 @@ struct LookRoom {
                    {3, wall_mount({12.0, 3.5, 1.6}, kPi), DiscShape{0.1}},
                    {4, wall_mount({0.0, 3.5, 1.6}, 0.0), DiscShape{0.1}}}) {
     belief.pose = {4.0, 3.5, 0.0};
-    head_model.zoom = ZoomCalibration(640, 480, 319.5, 239.5, {{8.0, 582.0, 0.0}, {48.0, 3491.0, 0.0}});
+    head_model.zoom =
+        ZoomCalibration(640, 480, 319.5, 239.5, {{8.0, 582.0, 0.0}, {48.0, 3491.0, 0.0}});
   }
 
   LookPolicyParts parts(std::optional<LandmarkId> fixed = {}, std::uint64_t seed = 1) const {
     return {fixed, RandomStream(seed, "look"), landmarks, visibility, head_model, {}, {}};
   }
   LookContext context() const {
-    return {Stamp{},    belief,      head,     station_m,  path,     landmarks, visibility,
+    return {Stamp{},     belief,   head,       station_m, path,     landmarks, visibility,
             information, excluded, head_model, speed_mps, standing, odometry};
   }
 

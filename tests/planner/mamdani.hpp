@@ -51,8 +51,8 @@ class Mamdani {
       double mu = membership(system_.inputs[p.input].terms[p.term], x[p.input]);
       if (p.negated) mu = 1.0 - mu;
       if (rule.any)
-        result = system_.disjunction == "Maximum" ? std::max(result, mu)
-                                                  : result + mu - result * mu;
+        result =
+            system_.disjunction == "Maximum" ? std::max(result, mu) : result + mu - result * mu;
       else
         result = system_.conjunction == "AlgebraicProduct" ? result * mu : std::min(result, mu);
     }

@@ -31,8 +31,8 @@ struct LookContext {
   /// Landmarks that failed lately (not acquired), to be left out.
   const std::vector<LandmarkId>& excluded;
   const HeadModel& head_model;
-  double speed_mps = 0.0;  ///< of the base, now
-  bool standing = false;   ///< the robot has stopped in order to look
+  double speed_mps = 0.0;         ///< of the base, now
+  bool standing = false;          ///< the robot has stopped in order to look
   const OdometryNoise& odometry;  ///< how the covariance grows on the way
 };
 
