@@ -1,12 +1,16 @@
 #include "papers.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "vigia/core/angle.hpp"
 #include "vigia/evaluation/quixote_setting.hpp"
+#include "vigia/evaluation/rendered_views.hpp"
 #include "vigia/report/curve_chart.hpp"
 
 namespace vigia::app {
@@ -20,6 +24,7 @@ using evaluation::QuixoteSetting;
 using evaluation::ViewMethod;
 
 constexpr int kRandomViews = 2000;
+constexpr int kRenderedViews = 1000;
 constexpr int kSweepViews = 400;
 constexpr std::uint64_t kSeed = 1;
 constexpr std::array<double, 3> kNoise_px{0.1, 0.5, 1.0};
@@ -44,7 +49,7 @@ constexpr std::array<Quantity, kViewQuantities> kTable1{
 
 /// Every method on the same views.
 struct Judged {
-  double sigma_px;
+  std::string where;  ///< and under which noise
   int views;
   MethodErrors printed;
   MethodErrors as_published;
@@ -53,8 +58,8 @@ struct Judged {
   LimitErrors limit;
 };
 
-Judged judge(const std::vector<PatternView>& views, double sigma_px) {
-  return {sigma_px,
+Judged judge(const std::vector<PatternView>& views, std::string where) {
+  return {std::move(where),
           static_cast<int>(views.size()),
           judge_views(views, ViewMethod::printed),
           judge_views(views, ViewMethod::as_published),
@@ -63,11 +68,11 @@ Judged judge(const std::vector<PatternView>& views, double sigma_px) {
           limit_of_views(views)};
 }
 
-void add_rows(const Judged& judged, const std::string& where, evaluation::PaperTable& table) {
+void add_rows(const Judged& judged, evaluation::PaperTable& table) {
   for (std::size_t i = 0; i < kViewQuantities; ++i) {
     const Quantity& q = kTable1[i];
     const auto name = [&](const char* what) {
-      return fmt::format("{}, {} px: {} {}", where, judged.sigma_px, q.name, what);
+      return fmt::format("{}: {} {}", judged.where, q.name, what);
     };
     const auto published = judged.as_published.quantities[i];
     const auto exact = judged.exact.quantities[i];
@@ -92,11 +97,29 @@ void add_rows(const Judged& judged, const std::string& where, evaluation::PaperT
     rms.n = judged.views;
     for (auto& row : {mean, closed, rms, greatest}) table.rows.push_back(row);
   }
-  evaluation::PaperRow printed{
-      fmt::format("{}, {} px: θ mean, signs as printed", where, judged.sigma_px), "°"};
+  evaluation::PaperRow printed{fmt::format("{}: θ mean, signs as printed", judged.where), "°"};
   printed.as_published = to_deg(judged.printed.quantities[1].mean);
   printed.n = judged.printed.views;
   table.rows.push_back(printed);
+}
+
+/// The room once more, from pixels.
+void add_rendered(const QuixoteSetting& setting, int count, evaluation::PaperTable& table) {
+  constexpr sim::ImagingParams kImaging{4.0, 0.7, true};
+  RandomStream random(kSeed, "random views");
+  const auto views = random_views(setting, 0.1, std::min(count, kRenderedViews), random);
+  const auto rendered = evaluation::render_views(setting, views, kImaging, kSeed);
+  add_rows(judge(rendered.read, "room, rendered"), table);
+  const auto row = [&](const char* what, int number) {
+    evaluation::PaperRow r{fmt::format("room, rendered: {}", what), "views"};
+    r.best = number;
+    r.n = static_cast<int>(views.size());
+    table.rows.push_back(r);
+  };
+  row("rejected", rendered.rejected);
+  row("wrong codes", rendered.wrong);
+  table.noise.emplace_back("rendered_noise_sigma", kImaging.noise_sigma);
+  table.noise.emplace_back("rendered_blur_px", kImaging.blur_px);
 }
 
 /// Mean errors of position in cm at one distance off the centre.
@@ -223,11 +246,13 @@ evaluation::PaperTable reproduce_quixote(const PaperOptions& options) {
                  {"camera_height_m", setting.camera_height_m}};
   for (const double sigma : kNoise_px) {
     RandomStream random(kSeed, "random views");  // the same views at every noise
-    add_rows(judge(random_views(setting, sigma, count, random), sigma), "room", table);
+    add_rows(judge(random_views(setting, sigma, count, random), fmt::format("room, {} px", sigma)),
+             table);
   }
   RandomStream random(kSeed, "route");
   const std::vector<PatternView> route = route_views(setting, 0.5, random);
-  add_rows(judge(route, 0.5), "route", table);
+  add_rows(judge(route, "route, 0.5 px"), table);
+  add_rendered(setting, count, table);
   draw_route(setting, route, options.out);
   sweep_off_centre(setting, options.out, table);
   table.remarks = {"noise in px is that of each dot's centre; best is the refined pose",
