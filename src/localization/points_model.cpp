@@ -12,9 +12,9 @@ namespace vigia::localization {
 namespace {
 
 /// Below this cosine between normal and line of sight a landmark is edge on.
-/// Share of the greatest information below which a direction of the state is not measured: rounding
-/// leaves some 1e-13 of it, the weakest that points do measure is above 1e-9.
-constexpr double kNothing = 1e-11;
+/// Share of the greatest information below which a direction of the state is not measured. Rounding
+/// leaves about as much, and some weak direction that points do measure is below 1e-11.
+constexpr double kNothing = 1e-13;
 constexpr double kEdgeOn = 1e-3;
 
 Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
