@@ -75,7 +75,7 @@ TEST_F(BlockedRoute, ByWhatTheMapLacksIsPlannedAnewAndTheStorySaysWhy) {
   const MissionSetup setup = hall();
   EXPECT_NEAR(setup.path.length(), 6.9, 0.1);
   // With these seeds he stands in the front passage, not at its end before the goal.
-  for (const std::uint64_t seed : {4, 5, 6}) {
+  for (std::uint64_t seed = 4; seed <= 6; ++seed) {
     say_ = {};
     EXPECT_EQ(drive(setup, seed), Outcome::arrived) << seed;
     const auto plans = told("replan");
