@@ -64,6 +64,7 @@ Json arm_json(const Arm& arm, const ArmStatistics& statistics) {
        {{"episodes", s.losses.episodes},
         {"announced", share_json(s.losses.announced, s.losses.episodes, s.losses.announced_share)},
         {"ended", s.losses.ended},
+        {"recovered", share_json(s.losses.ended, s.losses.episodes, s.losses.ended_share)},
         {"mean_lost_s", s.losses.mean_lost_s}}},
       {"means", metrics_json(statistics.means)},
       {"differences", metrics_json(statistics.differences)},
@@ -72,16 +73,20 @@ Json arm_json(const Arm& arm, const ArmStatistics& statistics) {
   return json;
 }
 
-std::string lost_cell(const LossStatistics& losses) {
-  if (losses.episodes == 0) return "0";
-  return fmt::format("{}: {} said in time, {} found again", losses.episodes, losses.announced,
-                     losses.ended);
+std::string said_in_time(const LossStatistics& losses) {
+  return losses.episodes == 0 ? "–"
+                              : share(losses.announced, losses.episodes, losses.announced_share);
+}
+
+std::string found_again(const LossStatistics& losses) {
+  return losses.episodes == 0 ? "–" : share(losses.ended, losses.episodes, losses.ended_share);
 }
 
 TextRows arm_rows(const Campaign& campaign, const std::vector<ArmStatistics>& statistics) {
   TextRows rows{{"arm", "arrived", "collided"}};
   for (const auto& metric : campaign_metrics()) rows.front().push_back(metric.label);
-  for (const char* label : {"PCRLB ratio", "NEES/dof", "ANEES in band", "times lost"})
+  for (const char* label : {"PCRLB ratio", "NEES/dof", "ANEES in band", "times lost",
+                            "said before 50 cm", "found again"})
     rows.front().emplace_back(label);
   for (std::size_t i = 0; i < statistics.size(); ++i) {
     const SeedStatistics& s = statistics[i].over_seeds;
@@ -94,7 +99,9 @@ TextRows arm_rows(const Campaign& campaign, const std::vector<ArmStatistics>& st
     row.push_back(figure(l.pcrlb_ratio, 1, 3));
     row.push_back(fmt::format("{:.3f}", l.nees_per_dof));
     row.push_back(fmt::format("{:.0f} % of {}", 100 * l.anees_in_band, l.anees.size()));
-    row.push_back(lost_cell(s.losses));
+    row.push_back(std::to_string(s.losses.episodes));
+    row.push_back(said_in_time(s.losses));
+    row.push_back(found_again(s.losses));
     rows.push_back(row);
   }
   return rows;
@@ -168,7 +175,9 @@ std::string single_text(const Campaign& campaign, const ArmStatistics& statistic
         text += fmt::format("{} {}{}", metrics[m].label,
                             figure(statistics.means[m], metrics[m].factor, metrics[m].digits),
                             metrics[m].key == "sim_s" ? "\n" : ", ");
-  text += fmt::format("times lost {}\n\nmeans over seeds [95 %]\n", lost_cell(s.losses));
+  text += fmt::format(
+      "times lost {}, said before 50 cm {}, found again {}\n\nmeans over seeds [95 %]\n",
+      s.losses.episodes, said_in_time(s.losses), found_again(s.losses));
   for (const auto& [name, l] : s.localizers) text += localizer_text(name, l);
   return text;
 }

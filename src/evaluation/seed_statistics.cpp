@@ -63,6 +63,11 @@ LocalizerStatistics localizer_statistics(const std::vector<DriveScore>& scores,
   return statistics;
 }
 
+/// Of a share of episodes; nothing is known of it where there were none.
+Interval share_of(int count, int episodes) {
+  return episodes > 0 ? clopper_pearson(count, episodes) : Interval{0.0, 1.0};
+}
+
 LossStatistics loss_statistics(const std::vector<DriveScore>& scores) {
   LossStatistics losses;
   double lost_s = 0.0;
@@ -74,8 +79,8 @@ LossStatistics loss_statistics(const std::vector<DriveScore>& scores) {
       ++losses.ended;
       lost_s += *episode.ended_s - episode.began_s();
     }
-  losses.announced_share =
-      losses.episodes > 0 ? clopper_pearson(losses.announced, losses.episodes) : Interval{0.0, 1.0};
+  losses.announced_share = share_of(losses.announced, losses.episodes);
+  losses.ended_share = share_of(losses.ended, losses.episodes);
   if (losses.ended > 0) losses.mean_lost_s = lost_s / losses.ended;
   return losses;
 }

@@ -97,6 +97,7 @@ void Loop::tick() {
   const TimedFrame frame(*shown.frame);
   sighting_.reset();
   observation_.reset();
+  activations_.reset();
   for (auto& localizer_tick : localizer_ticks_) localizer_tick.update.reset();
   if (setup_.full_frames) imaging::grey_image(frame);
   // A frame of an earlier look says nothing of this one.
@@ -138,7 +139,8 @@ void Loop::tick() {
                   pilot_.station(),
                   *shown.frame,
                   sighting_ ? sighting_->predicted : std::nullopt,
-                  timing_};
+                  timing_,
+                  activations_};
   for (Listener* listener : listeners_) listener->on_tick(told);
 }
 

@@ -116,6 +116,7 @@ class Loop {
   std::vector<LocalizerTick> localizer_ticks_;
   std::optional<Sighting> sighting_;
   std::optional<Observation> observation_;
+  std::optional<pilot::Activations> activations_;
   TickTiming timing_;
 };
 

@@ -6,6 +6,7 @@ BaseRates Loop::drive() {
   const RangeScan scan = simulator_.scan();
   const pilot::PilotOutput output = pilot_.step(
       {now_, odometry_, belief(), scan.readings.empty() ? nullptr : &scan, stopped_to_look_});
+  activations_ = output.activations;
   tell_pilot(output);
   if (output.status == pilot::PilotStatus::blocked) go_round(output);
   return output.rates;

@@ -145,6 +145,7 @@ bool Loop::stroll_on() {
   if (now_ >= stroll_end_) return false;
   const RangeScan scan = simulator_.scan();
   const auto output = stroll_->step({now_, odometry_, belief(), &scan, false});
+  activations_ = output.activations;
   const bool under_way =
       output.status != pilot::PilotStatus::arrived && output.status != pilot::PilotStatus::blocked;
   command_ = under_way ? output.rates : BaseRates{};

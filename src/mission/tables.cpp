@@ -38,7 +38,7 @@ std::string header(const std::vector<std::string>& localizers) {
     for (const char* column : {"x_m", "y_m", "theta_rad", "var_x", "var_y", "var_theta", "cov_xy",
                                "cov_xtheta", "cov_ytheta", "status", "update", "nis"})
       text += "," + name + "_" + column;
-  return text + "\n";
+  return text + ",activation_follow,activation_avoid,activation_hold\n";
 }
 
 void put_state(Buffer& line, const Tick& tick) {
@@ -85,6 +85,13 @@ void put_belief(Buffer& line, const LocalizerTick& localizer) {
     put(line, ",");
 }
 
+void put_activations(Buffer& line, const std::optional<pilot::Activations>& activations) {
+  if (activations)
+    put(line, ",{:.4f},{:.4f},{:.4f}", activations->follow, activations->avoid, activations->hold);
+  else
+    put(line, ",,,");
+}
+
 /// The median and the 99th percentile of one part of the ticks.
 nlohmann::json percentiles(const std::vector<TickTiming>& timings, double TickTiming::*part) {
   std::vector<double> values;
@@ -119,6 +126,7 @@ void Tables::tick(const Tick& tick) {
   put_state(line, tick);
   put_gaze(line, tick);
   for (const auto& localizer : tick.localizers) put_belief(line, localizer);
+  put_activations(line, tick.activations);
   line.push_back('\n');
   ticks_.write(view(line));
 

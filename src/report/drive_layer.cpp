@@ -1,5 +1,6 @@
 #include "drive_layer.hpp"
 
+#include "map_marks.hpp"
 #include "travel.hpp"
 
 #include <algorithm>
@@ -13,6 +14,8 @@ namespace {
 
 // χ² of two degrees of freedom at 95 %.
 constexpr double kChi2At95 = 5.991464547107979;
+
+constexpr double kHalo = 2.5;  // round labels
 
 std::vector<Eigen::Vector2d> positions(const std::vector<Pose2>& poses) {
   std::vector<Eigen::Vector2d> points;
@@ -90,14 +93,7 @@ void draw_arrows(const Sheet& sheet, const MapView& view, const std::vector<Pose
     next += 2.0;
     const Eigen::Vector2d along = truth[i].position() - truth[i - 1].position();
     const Eigen::Vector2d u = Eigen::Vector2d(along.x(), -along.y()).normalized();
-    const Eigen::Vector2d left(-u.y(), u.x());
-    const Eigen::Vector2d tip = view(truth[i].position()) + 7.0 * u;
-    const std::vector<Eigen::Vector2d> chevron{tip - 13.0 * u + 8.0 * left, tip,
-                                               tip - 13.0 * u - 8.0 * left};
-    sheet.polyline(chevron);
-    sheet.stroke({palette::kWhite, 5.5});
-    sheet.polyline(chevron);
-    sheet.stroke({palette::kInk, 2.4});
+    draw_chevron(sheet, view(truth[i].position()), u, 5.5, 2.4);
   }
 }
 
@@ -113,30 +109,17 @@ void draw_robot(const Sheet& sheet, const MapView& view, const Pose2& pose, doub
   sheet.line(centre, centre + radius * nose, {colour, 2.2});
 }
 
-void block_tag(LabelPlacer& labels, const Eigen::Vector2d& centre, double radius) {
-  labels.block({centre.x() - radius, centre.y() - radius, 2.0 * radius, 2.0 * radius});
-}
-
-void draw_tag(const Sheet& sheet, LabelPlacer& labels, const std::string& text,
-              const Eigen::Vector2d& anchor, double gap, const Eigen::Vector2d& preferred,
-              const Font& font, Colour colour) {
-  const Eigen::Vector2d size = sheet.text_size(text, font) + Eigen::Vector2d(4.0, 0.0);
-  if (const auto box = labels.place(anchor, size, gap, preferred))
-    sheet.outlined_text(text, {box->x + 0.5 * box->width, box->y + 0.5 * box->height}, font, colour,
-                        palette::kWhite, 2.5, {0.5, 0.5});
-}
-
 void draw_landmarks(const Sheet& sheet, const MapView& view, const MapDrive& drive,
                     LabelPlacer& labels) {
   for (const Landmark& landmark : drive.world.landmarks.all()) {
     draw_landmark(sheet, view, landmark, landmark_colour(drive.world.landmarks, landmark.id));
-    block_tag(labels, view(landmark.centre_w().head<2>()), 9.0);
+    block_disc(labels, view(landmark.centre_w().head<2>()), 9.0);
   }
   for (const Landmark& landmark : drive.world.landmarks.all()) {
     const Eigen::Vector2d behind(-landmark.normal_w().x(), landmark.normal_w().y());
     const double gap = 4.0 + std::max(7.0, disc_radius(landmark).value_or(0.0) * view.scale);
     draw_tag(sheet, labels, "L" + std::to_string(landmark.id), view(landmark.centre_w().head<2>()),
-             gap, behind, {17.0, true}, palette::kInk);
+             gap, behind, {17.0, true}, palette::kInk, kHalo);
   }
 }
 
@@ -153,7 +136,7 @@ void draw_rings(const Sheet& sheet, const MapView& view, const MapDrive& drive,
 void draw_looks(const Sheet& sheet, const MapView& view, const MapDrive& drive,
                 LabelPlacer& labels) {
   constexpr double kRadius = 5.0;
-  for (const MapLook& look : drive.looks) block_tag(labels, view(look.from), kRadius);
+  for (const MapLook& look : drive.looks) block_disc(labels, view(look.from), kRadius);
   int number = 0;
   for (const MapLook& look : drive.looks) {
     const Eigen::Vector2d at = view(look.from);
@@ -162,7 +145,8 @@ void draw_looks(const Sheet& sheet, const MapView& view, const MapDrive& drive,
     sheet.fill(look.fused ? colour : palette::kWhite);
     sheet.circle(at, kRadius);
     sheet.stroke({palette::kInk, 1.3});
-    draw_tag(sheet, labels, std::to_string(++number), at, 8.0, {0.0, -1.0}, {13.0}, palette::kInk);
+    draw_tag(sheet, labels, std::to_string(++number), at, 8.0, {0.0, -1.0}, {13.0}, palette::kInk,
+             kHalo);
   }
 }
 
@@ -172,16 +156,16 @@ void draw_ends(const Sheet& sheet, const MapView& view, const MapDrive& drive,
   const double gap = drive.robot_radius_m * view.scale + 4.0;
   const Eigen::Vector2d start = view(drive.truth.front().position());
   draw_robot(sheet, view, drive.truth.front(), drive.robot_radius_m, palette::kInk);
-  draw_tag(sheet, labels, "start", start, gap, {0.0, 1.0}, {15.0, true}, palette::kInk);
+  draw_tag(sheet, labels, "start", start, gap, {0.0, 1.0}, {15.0, true}, palette::kInk, kHalo);
   draw_robot(sheet, view, drive.truth.back(), drive.robot_radius_m, palette::kInk);
   draw_tag(sheet, labels, "end", view(drive.truth.back().position()), gap, {0.0, 1.0}, {15.0, true},
-           palette::kInk);
+           palette::kInk, kHalo);
   if (drive.planned.empty()) return;
   const Eigen::Vector2d goal = view(drive.planned.points().back());
   for (const double turn : {-1.0, 1.0})
     sheet.line(goal + Eigen::Vector2d(-8.0, -8.0 * turn), goal + Eigen::Vector2d(8.0, 8.0 * turn),
                {palette::kVermillion, 3.5});
-  draw_tag(sheet, labels, "goal", goal, gap, {1.0, 0.0}, {15.0, true}, palette::kVermillion);
+  draw_tag(sheet, labels, "goal", goal, gap, {1.0, 0.0}, {15.0, true}, palette::kVermillion, kHalo);
 }
 
 void avoid_paths(LabelPlacer& labels, const MapView& view, const MapDrive& drive) {

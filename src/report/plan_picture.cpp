@@ -1,6 +1,7 @@
 #include "vigia/report/plan_picture.hpp"
 
 #include "label_placer.hpp"
+#include "map_marks.hpp"
 #include "map_view.hpp"
 #include "sheet.hpp"
 
@@ -18,6 +19,7 @@ constexpr double kMapHeight = 1000.0;
 constexpr double kMapMargin_m = 0.45;
 constexpr double kAxisHeight = 62.0;
 constexpr double kLegendHeight = 42.0;
+constexpr double kHalo = 3.0;  // round labels
 
 /// Neighbouring areas take turns.
 Colour area_colour(std::size_t index) {
@@ -95,35 +97,15 @@ void draw_arrows(const Sheet& sheet, const MapView& view, const PlanPicture& pla
     const double s = 0.5 * (area.from_m + area.to_m) + 0.5;
     const double heading = plan.path.heading(s);
     const Eigen::Vector2d u(std::cos(heading), -std::sin(heading));
-    const Eigen::Vector2d left(-u.y(), u.x());
-    const Eigen::Vector2d tip = view(plan.path.at(s)) + 7.0 * u;
-    const std::vector<Eigen::Vector2d> chevron{tip - 13.0 * u + 8.0 * left, tip,
-                                               tip - 13.0 * u - 8.0 * left};
-    sheet.polyline(chevron);
-    sheet.stroke({palette::kWhite, 6.0});
-    sheet.polyline(chevron);
-    sheet.stroke({palette::kInk, 2.6});
+    draw_chevron(sheet, view(plan.path.at(s)), u, 6.0, 2.6);
   }
-}
-
-void place_text(const Sheet& sheet, LabelPlacer& labels, const std::string& text,
-                const Eigen::Vector2d& anchor, double gap, const Eigen::Vector2d& preferred,
-                const Font& font, Colour colour) {
-  const Eigen::Vector2d size = sheet.text_size(text, font) + Eigen::Vector2d(4.0, 0.0);
-  if (const auto box = labels.place(anchor, size, gap, preferred))
-    sheet.outlined_text(text, {box->x + 0.5 * box->width, box->y + 0.5 * box->height}, font, colour,
-                        palette::kWhite, 3.0, {0.5, 0.5});
-}
-
-void block(LabelPlacer& labels, const Eigen::Vector2d& centre, double radius) {
-  labels.block({centre.x() - radius, centre.y() - radius, 2.0 * radius, 2.0 * radius});
 }
 
 /// Keeps labels off what is drawn.
 void avoid_drawing(LabelPlacer& labels, const MapView& view, const PlanPicture& plan) {
   for (const Eigen::Vector2d& p : view(stretch(plan.path, 0.0, plan.path.length())))
-    block(labels, p, 5.0);
-  for (const double s : plan.turn_points) block(labels, view(plan.path.at(s)), 10.0);
+    block_disc(labels, p, 5.0);
+  for (const double s : plan.turn_points) block_disc(labels, view(plan.path.at(s)), 10.0);
   for (const PictureArea& area : plan.areas) {
     const Landmark* landmark = area.chosen ? plan.world.landmarks.find(*area.chosen) : nullptr;
     if (landmark == nullptr) continue;
@@ -138,23 +120,23 @@ void draw_labels(const Sheet& sheet, const MapView& view, const PlanPicture& pla
   avoid_drawing(labels, view, plan);
   for (const Landmark& landmark : plan.world.landmarks.all()) {
     draw_landmark(sheet, view, landmark, landmark_colour(plan.world.landmarks, landmark.id));
-    block(labels, view(landmark.centre_w().head<2>()), 10.0);
+    block_disc(labels, view(landmark.centre_w().head<2>()), 10.0);
   }
   for (const Landmark& landmark : plan.world.landmarks.all())
-    place_text(sheet, labels, "L" + std::to_string(landmark.id),
-               view(landmark.centre_w().head<2>()), 12.0,
-               {-landmark.normal_w().x(), landmark.normal_w().y()}, {18.0, true}, palette::kInk);
+    draw_tag(sheet, labels, "L" + std::to_string(landmark.id), view(landmark.centre_w().head<2>()),
+             12.0, {-landmark.normal_w().x(), landmark.normal_w().y()}, {18.0, true}, palette::kInk,
+             kHalo);
   const double start = plan.path.heading(0.0);
-  place_text(sheet, labels, "start", view(plan.path.at(0.0)), 9.0,
-             {-std::cos(start), std::sin(start)}, {15.0, true}, palette::kInk);
+  draw_tag(sheet, labels, "start", view(plan.path.at(0.0)), 9.0,
+           {-std::cos(start), std::sin(start)}, {15.0, true}, palette::kInk, kHalo);
   const double end = plan.path.heading(plan.path.length());
-  place_text(sheet, labels, "goal", view(plan.path.at(plan.path.length())), 9.0,
-             {std::cos(end), -std::sin(end)}, {15.0, true}, palette::kVermillion);
+  draw_tag(sheet, labels, "goal", view(plan.path.at(plan.path.length())), 9.0,
+           {std::cos(end), -std::sin(end)}, {15.0, true}, palette::kVermillion, kHalo);
   for (std::size_t i = 0; i < plan.areas.size(); ++i) {
     const double s = 0.5 * (plan.areas[i].from_m + plan.areas[i].to_m);
     const double heading = plan.path.heading(s);
-    place_text(sheet, labels, plan.areas[i].label, view(plan.path.at(s)), 16.0,
-               {std::sin(heading), std::cos(heading)}, {18.0, true}, area_colour(i));
+    draw_tag(sheet, labels, plan.areas[i].label, view(plan.path.at(s)), 16.0,
+             {std::sin(heading), std::cos(heading)}, {18.0, true}, area_colour(i), kHalo);
   }
 }
 

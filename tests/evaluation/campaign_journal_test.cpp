@@ -132,6 +132,15 @@ TEST_F(Journal, OfAnotherCampaignOrVersionIsRefused) {
   EXPECT_THAT(mistake(small_campaign()), HasSubstr("its version is 9."));
 }
 
+TEST_F(Journal, OfAnotherBuildIsRefused) {
+  run();
+  std::string header = read_text(folder_ / "campaign.json");
+  const std::size_t build = header.find("\"build\": \"") + 10;
+  header[build] = header[build] == '0' ? '1' : '0';
+  std::ofstream(folder_ / "campaign.json") << header;
+  EXPECT_THAT(mistake(small_campaign()), HasSubstr("its build is "));
+}
+
 TEST_F(Journal, BegunAnewForgetsTheOtherCampaign) {
   run();
   Campaign other = small_campaign();
@@ -197,6 +206,15 @@ TEST(ScoreRecord, ComesBackEqualToTheBit) {
   EXPECT_EQ(back.localizers.at("ekf").lost[1].passed_s, 2.25);
   EXPECT_FALSE(back.localizers.at("ekf").lost[0].ended_s);
   EXPECT_EQ(back.recovery.recovering_s, 0.7);
+}
+
+TEST(ScoreRecord, WithoutItsLossesIsRefused) {
+  DriveScore score;
+  score.localizers["ekf"].lost = {{1.5, 2.0, 3.0}};
+  std::string record = score_record(score);
+  ASSERT_NO_THROW(score_from_record(record));
+  record.replace(record.find("\"lost\":[{"), 6, "\"gone\"");
+  EXPECT_THROW(score_from_record(record), std::exception);
 }
 
 }  // namespace

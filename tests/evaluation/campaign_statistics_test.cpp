@@ -2,6 +2,9 @@
 
 #include "loss_watch.hpp"
 
+#include <algorithm>
+#include <sstream>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -64,6 +67,55 @@ TEST(CampaignStatistics, CountsWhatWasAnnouncedAndWhatEnded) {
   EXPECT_EQ(losses.ended, 2);
   EXPECT_NEAR(losses.mean_lost_s, 0.5 * (4.0 + 1.0), 1e-12);
   EXPECT_NEAR(losses.announced_share.low, clopper_pearson(2, 3).low, 1e-12);
+}
+
+/// What stands in the row of @p arm below the heading @p label.
+std::string markdown_cell(const std::string& text, const std::string& arm,
+                          const std::string& label) {
+  const auto cells = [&](std::size_t at) {
+    std::vector<std::string> result;
+    std::istringstream line(text.substr(at, text.find('\n', at) - at));
+    for (std::string cell; std::getline(line, cell, '|');) result.push_back(cell);
+    return result;
+  };
+  const auto labels = cells(text.find("| arm |"));
+  const auto row = cells(text.find("\n| " + arm + " |") + 1);
+  const auto it = std::find(labels.begin(), labels.end(), " " + label + " ");
+  return it == labels.end() ? "no such label"
+                            : row.at(static_cast<std::size_t>(it - labels.begin()));
+}
+
+TEST(CampaignReport, SaysWhatShareOfTheLossesWasSaidInTimeAndEnded) {
+  auto scores = two_arms_scores();
+  // Ten losses, nine said in time, seven ended.
+  auto& lost = scores[0][1].localizers["ekf"].lost;
+  for (int i = 0; i < 7; ++i) lost.push_back({1.0 + i, std::nullopt, 1.5 + i});
+  scores[0][2].localizers["ekf"].lost = {{1.0, 2.0, std::nullopt}, {3.0, 3.0, std::nullopt}};
+  scores[0][0].localizers["ekf"].lost = {{std::nullopt, 2.0, std::nullopt}};
+  const auto campaign = two_arms();
+  const auto statistics = campaign_statistics(campaign, scores);
+  const std::string table = campaign_markdown(campaign, statistics);
+  EXPECT_EQ(markdown_cell(table, "a", "times lost"), " 10 ");
+  // The exact 95 % intervals of 9 and 7 in 10, from the tables of the beta distribution.
+  EXPECT_EQ(markdown_cell(table, "a", "said before 50 cm"), " 9/10 [55.5, 99.7] % ");
+  EXPECT_EQ(markdown_cell(table, "a", "found again"), " 7/10 [34.8, 93.3] % ");
+  EXPECT_EQ(markdown_cell(table, "b", "times lost"), " 0 ");
+  EXPECT_EQ(markdown_cell(table, "b", "said before 50 cm"), " – ");
+  const auto json = nlohmann::json::parse(campaign_json(campaign, statistics));
+  EXPECT_EQ(json["arms"][0]["lost"]["announced"]["count"], 9);
+  EXPECT_EQ(json["arms"][0]["lost"]["recovered"]["count"], 7);
+  EXPECT_EQ(json["arms"][0]["lost"]["recovered"]["of"], 10);
+  EXPECT_NEAR(json["arms"][0]["lost"]["recovered"]["low"].get<double>(), 0.348, 5e-4);
+}
+
+TEST(CampaignReport, OfOneArmSaysTheSame) {
+  Campaign campaign = two_arms();
+  campaign.arms.resize(1);
+  campaign.baseline = 0;
+  std::vector<std::vector<DriveScore>> scores{two_arms_scores()[0]};
+  scores[0][0].localizers["ekf"].lost = {{1.0, 2.0, 5.0}};
+  EXPECT_THAT(campaign_text(campaign, campaign_statistics(campaign, scores)),
+              HasSubstr("times lost 1, said before 50 cm 1/1 [2.5, 100.0] %, found again 1/1"));
 }
 
 TEST(CampaignReport, HasOneRowAnArmSeedAndLocalizer) {

@@ -38,6 +38,28 @@ class CampaignFile : public ::testing::Test {
     for (const auto& arm : campaign.arms) names.push_back(arm.name);
     return names;
   }
+  /// The disturbances that an arm's mission switches on.
+  static std::vector<std::string> on(const Arm& arm) {
+    const sim::DisturbanceParams& d = arm.setup.disturbances;
+    std::vector<std::string> names;
+    const auto note = [&](const char* name, bool is_on) {
+      if (is_on) names.emplace_back(name);
+    };
+    note("motion_blur", d.motion_blur.has_value());
+    note("latency", d.latency.has_value());
+    note("light", d.light.has_value());
+    note("mounting", d.mounting.has_value());
+    note("zoom_calibration", d.zoom_calibration.has_value());
+    note("principal_point", d.principal_point.has_value());
+    note("backlash", d.backlash.has_value());
+    note("wheel_slip", d.wheel_slip.has_value());
+    note("map_error", d.map_error.has_value());
+    note("missing_landmarks", d.missing_landmarks.has_value());
+    note("people", d.people.has_value());
+    note("clutter", d.clutter.has_value());
+    note("kidnapping", d.kidnapping.has_value());
+    return names;
+  }
   vigia::testing::TempDir dir_;
 };
 
@@ -68,8 +90,34 @@ TEST_F(CampaignFile, IsOverriddenInEveryArm) {
   for (const auto& arm : campaign.arms) EXPECT_EQ(arm.setup.timeout_s, 60.0);
 }
 
-TEST_F(CampaignFile, SetsOneDisturbanceToRealisticOrNone) {
-  // The mission says whether it knows the name; here it is asked for one that nobody can know.
+TEST_F(CampaignFile, SwitchesOnOneDisturbanceAnArmNoneOrAllButKidnapping) {
+  // The mission's own disturbances are no part of an arm.
+  const Campaign campaign = read(
+      "set: [disturbances.light=realistic]\ndisturbances: [none, wheel_slip, kidnapping, all]\n");
+  EXPECT_THAT(names(campaign), ElementsAre("none", "wheel_slip", "kidnapping", "all"));
+  EXPECT_THAT(on(campaign.arms[0]), ElementsAre());
+  EXPECT_THAT(on(campaign.arms[1]), ElementsAre("wheel_slip"));
+  EXPECT_THAT(on(campaign.arms[2]), ElementsAre("kidnapping"));
+  EXPECT_THAT(on(campaign.arms[3]),
+              ElementsAre("motion_blur", "latency", "light", "mounting", "zoom_calibration",
+                          "principal_point", "backlash", "wheel_slip", "map_error",
+                          "missing_landmarks", "people", "clutter"));
+  const auto& slip = *campaign.arms[1].setup.disturbances.wheel_slip;
+  EXPECT_EQ(slip.per_m, sim::WheelSlipParams{}.per_m);
+  EXPECT_EQ(slip.skew_per_m, sim::WheelSlipParams{}.skew_per_m);
+  EXPECT_EQ(campaign.arms[1].disturbance, "wheel_slip");
+  EXPECT_NE(campaign.arms[0].setup.resolved_yaml, campaign.arms[1].setup.resolved_yaml);
+}
+
+TEST_F(CampaignFile, CrossesDisturbancesWithPolicies) {
+  const Campaign campaign = read("policies: [nearest, random]\ndisturbances: [none, people]\n");
+  EXPECT_THAT(names(campaign),
+              ElementsAre("nearest/none", "nearest/people", "random/none", "random/people"));
+  EXPECT_EQ(campaign.arms[3].setup.look.policy, "random");
+  EXPECT_THAT(on(campaign.arms[3]), ElementsAre("people"));
+}
+
+TEST_F(CampaignFile, RejectsADisturbanceThatTheMissionDoesNotKnow) {
   const std::string message = mistake("disturbances: [none, gremlins]\n");
   EXPECT_THAT(message, HasSubstr("campaign.yaml:4:15"));
   EXPECT_THAT(message, HasSubstr("disturbances"));

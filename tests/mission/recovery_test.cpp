@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -48,6 +49,122 @@ TEST(Recovery, ARobotThatSeesNoLandmarkGivesUpAndSaysSo) {
   EXPECT_EQ(run_mission(setup, 1, {&story}), Outcome::stuck);
   EXPECT_TRUE(story.tells("lost"));
   EXPECT_FALSE(story.tells("recovered"));
+}
+
+/// What happened on the way from being lost to being found.
+class Search : public Listener {
+ public:
+  void on_event(const Event& event) override {
+    const auto number = [&](const std::string& key) {
+      for (const auto& [name, value] : event.numbers)
+        if (name == key) return value;
+      return std::nan("");
+    };
+    if (event.kind == "stroll") stroll_m.push_back(number("length_m"));
+    if (event.kind == "stroll") strolled_m.push_back(0.0);
+    if (event.kind == "looked_around") hypotheses.push_back(number("hypotheses"));
+    if (event.kind == "lost") lost_s = event.stamp.seconds();
+    searching = (searching || event.kind == "lost") && event.kind != "recovered";
+    just_found = just_found || event.kind == "recovered";
+  }
+  void on_tick(const Tick& tick) override {
+    const double way = (tick.truth.pose.position() - tick.true_pose_before.position()).norm();
+    if (searching && !strolled_m.empty()) strolled_m.back() += way;
+    if (searching && !tick.activations)
+      most_in_sweep_mps = std::max(most_in_sweep_mps, std::abs(tick.base_command.v));
+    if (!just_found) return;
+    just_found = false;
+    const Belief& belief = *tick.localizers[tick.primary].belief;
+    const Eigen::Vector3d error = difference(belief.pose, tick.truth.pose);
+    distance2.push_back(error.dot(belief.covariance.inverse() * error));
+    found_sigma_m = belief.position_sigma();
+  }
+  std::vector<double> stroll_m;    ///< as the story has it
+  std::vector<double> strolled_m;  ///< truly driven from each stroll's beginning to the next's
+  std::vector<double> hypotheses;
+  std::vector<double> distance2;  ///< Mahalanobis, of the pose in which it found itself
+  double found_sigma_m = 0.0;
+  double lost_s = 0.0;
+  double most_in_sweep_mps = 0.0;
+  bool searching = false;
+  bool just_found = false;
+};
+
+/// χ² of three degrees of freedom at 99.99 %.
+constexpr double kFar2 = 21.1;
+
+/// A robot that is told nothing of its start.
+MissionSetup woken(const std::string& mission, const std::vector<std::string>& overrides) {
+  MissionSetup setup =
+      load_mission(std::string(VIGIA_SOURCE_DIR) + "/config/missions/" + mission, overrides);
+  setup.prior.pose = compose(setup.start, {1.0, -0.5, from_deg(120)});
+  setup.prior.covariance = Eigen::Vector3d(9.0, 9.0, 9.0).asDiagonal();
+  return setup;
+}
+
+TEST(Recovery, ARobotThatWokeAmongPatternsFindsItselfByTheirCodes) {
+  const MissionSetup setup = woken("quixote-room.yaml", {"timeout_s=13"});
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Search search;
+    run_mission(setup, seed, {&search});
+    EXPECT_LT(search.lost_s, 0.1) << seed;
+    // No disc of the map could have told it.
+    ASSERT_EQ(search.hypotheses, std::vector<double>{0.0}) << seed;
+    ASSERT_EQ(search.distance2.size(), 1U) << seed;
+    EXPECT_LT(search.distance2[0], kFar2) << seed;
+    EXPECT_LT(search.found_sigma_m, 0.1) << seed;
+    EXPECT_FALSE(search.searching) << seed;
+    EXPECT_EQ(search.most_in_sweep_mps, 0.0) << seed;
+  }
+}
+
+TEST(Recovery, WhereTooLittleIsSeenItStrollsToWhereMoreIs) {
+  // Behind the partition wall one disc shows; farther on there are more.
+  const MissionSetup setup =
+      woken("armingol-room.yaml", {"timeout_s=60", "start={position_m: [3.9, 5.9], heading_deg: 0}",
+                                   "route.via_m=[]", "route.goal_m=[1, 5.9]"});
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Search search;
+    EXPECT_EQ(run_mission(setup, seed, {&search}), Outcome::arrived) << seed;
+    ASSERT_GE(search.stroll_m.size(), 1U) << seed;
+    ASSERT_EQ(search.hypotheses.size(), search.stroll_m.size() + 1) << seed;
+    EXPECT_EQ(search.hypotheses.front(), 0.0) << seed;
+    EXPECT_GE(search.hypotheses.back(), 1.0) << seed;
+    // It stops within the pilot's tolerance of the end.
+    for (std::size_t i = 0; i < search.stroll_m.size(); ++i) {
+      EXPECT_LE(search.strolled_m[i], search.stroll_m[i] + setup.pilot.follower.goal_tolerance_m)
+          << seed;
+      EXPECT_GE(search.strolled_m[i],
+                search.stroll_m[i] - 2.0 * setup.pilot.follower.goal_tolerance_m)
+          << seed;
+    }
+    ASSERT_EQ(search.distance2.size(), 1U) << seed;
+    EXPECT_LT(search.distance2[0], kFar2) << seed;
+    EXPECT_EQ(search.most_in_sweep_mps, 0.0) << seed;
+  }
+}
+
+TEST(Recovery, ThereIsAStrollBetweenTwoSweepsAndNoneAfterTheLast) {
+  MissionSetup setup = mission_with_prior_off_by({});
+  setup.ekf.lost_sigma_m = 1e-4;
+  setup.recovery.sweeps = 3;
+  setup.recovery.tilt = from_deg(-80);
+  Search search;
+  EXPECT_EQ(run_mission(setup, 1, {&search}), Outcome::stuck);
+  EXPECT_EQ(search.hypotheses.size(), 3U);
+  EXPECT_EQ(search.stroll_m.size(), 2U);
+}
+
+TEST(Recovery, WithoutARingItStaysWhereItIs) {
+  MissionSetup setup = mission_with_prior_off_by({});
+  setup.robot.range_ring.reset();
+  setup.ekf.lost_sigma_m = 1e-4;
+  setup.recovery.sweeps = 2;
+  setup.recovery.tilt = from_deg(-80);
+  Search search;
+  EXPECT_EQ(run_mission(setup, 1, {&search}), Outcome::stuck);
+  EXPECT_EQ(search.hypotheses.size(), 2U);
+  EXPECT_TRUE(search.stroll_m.empty());
 }
 
 TEST(Mission, WithTheServosFeedForwardItsTargetStaysCentred) {

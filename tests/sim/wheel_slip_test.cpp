@@ -3,6 +3,7 @@
 #include "sim/room.hpp"
 
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -49,6 +50,51 @@ TEST(WheelSlip, LosesTheStatedShareOfTheWayInSlipsOfTheStatedNumberAndLength) {
               kSigmas * sigma_m / std::sqrt(1.0 * slips) + 0.1 * kStep_m);
   EXPECT_NEAR(lost / slipping, 0.5 * (params.least_loss + params.most_loss),
               kSigmas * 0.08 / std::sqrt(12.0) * 1.1 / std::sqrt(1.0 * slips));
+}
+
+TEST(WheelSlip, TurnsTheBaseDuringASlipByASkewOfItsOwnForEach) {
+  WheelSlipParams params;
+  params.diameter = params.base = 0.0;
+  WheelSlip slip(params, 1);
+  std::vector<double> skews;
+  bool before = false;
+  while (skews.size() < 20'000) {
+    const bool now = slip.slipping();
+    const double per_m = slip.over_ground({kStep_m, 0.0}).turn / kStep_m;
+    // A slip keeps its skew as long as it lasts; without one the base does not turn.
+    if (now && !before) skews.push_back(per_m);
+    ASSERT_EQ(per_m, now ? skews.back() : 0.0);
+    before = now;
+  }
+  double sum = 0.0;
+  double square = 0.0;
+  double neighbours = 0.0;
+  for (std::size_t i = 0; i < skews.size(); ++i) {
+    sum += skews[i];
+    square += skews[i] * skews[i];
+    if (i > 0) neighbours += skews[i] * skews[i - 1];
+  }
+  const double n = static_cast<double>(skews.size());
+  const double sigma = params.skew_per_m;
+  EXPECT_NEAR(sum / n, 0.0, kSigmas * sigma / std::sqrt(n));
+  EXPECT_NEAR(square / n / (sigma * sigma), 1.0, kSigmas * std::sqrt(2.0 / n));
+  EXPECT_NEAR(neighbours / n / (sigma * sigma), 0.0, kSigmas / std::sqrt(n));
+}
+
+TEST(WheelSlip, TurnsTheBaseTheSameWayInReverse) {
+  WheelSlipParams params;
+  params.diameter = params.base = 0.0;
+  WheelSlip forwards(params, 7);
+  WheelSlip backwards(params, 7);
+  double turned = 0.0;
+  for (int i = 0; i < 10'000; ++i) {
+    const ArcMotion there = forwards.over_ground({kStep_m, 0.0});
+    const ArcMotion back = backwards.over_ground({-kStep_m, 0.0});
+    ASSERT_EQ(back.distance, -there.distance);
+    ASSERT_EQ(back.turn, there.turn);
+    turned += std::abs(there.turn);
+  }
+  EXPECT_GT(turned, 0.0);
 }
 
 TEST(WheelSlip, ScaleErrorsStayAndHaveTheStatedSpread) {

@@ -27,7 +27,8 @@ struct LossStatistics {
   int episodes = 0;
   int announced = 0;         ///< said before the error passed LostEpisode::kLost_m, if it ever did
   Interval announced_share;  ///< Clopper–Pearson, 95 %; [0, 1] without episodes
-  int ended = 0;             ///< it found itself again
+  int ended = 0;             ///< it found itself again before the drive was over
+  Interval ended_share;      ///< as announced_share
   double mean_lost_s = 0.0;  ///< of those that ended
 };
 

@@ -11,6 +11,7 @@
 #include "vigia/imaging/frame.hpp"
 #include "vigia/localization/localizer.hpp"
 #include "vigia/mission/setup.hpp"
+#include "vigia/pilot/pilot.hpp"
 #include "vigia/tracking/ellipse_tracker.hpp"
 
 namespace vigia::mission {
@@ -62,6 +63,8 @@ struct Tick {
   const imaging::Frame& frame;
   std::optional<Ellipse> predicted;  ///< expected image of the ordered landmark
   TickTiming timing;
+  /// Of the pilot's behaviours; nothing while a lost robot stands and looks around.
+  std::optional<pilot::Activations> activations;
 };
 
 /// A line of the story. Values are already text: numbers by shortest round trip.
