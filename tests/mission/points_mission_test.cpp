@@ -22,6 +22,22 @@ class Looks : public Listener {
   int planned = 0;
 };
 
+/// Ticks whose localizers took in an observation, and those of them that are told without it.
+class Updates : public Listener {
+ public:
+  void on_tick(const Tick& tick) override {
+    for (const LocalizerTick& localizer : tick.localizers) {
+      if (!localizer.update) continue;
+      ++count;
+      if (tick.observation == nullptr || sensor_of(*tick.observation).look != tick.look) ++untold;
+    }
+  }
+  void on_event(const Event& event) override { dropped += event.kind == "dropped" ? 1 : 0; }
+  int count = 0;
+  int untold = 0;
+  int dropped = 0;
+};
+
 class PointsMission : public ::testing::TestWithParam<const char*> {
  protected:
   MissionSetup setup() const {
@@ -50,6 +66,19 @@ INSTANTIATE_TEST_SUITE_P(Rooms, PointsMission,
                            name.erase(name.find('-'));
                            return name;
                          });
+
+// In this drive the EKF rejects a pattern until the look is dropped, in a tick in which pattern_fix
+// takes it in.
+TEST(PointsMissions, ADroppedLookIsToldWithTheObservationThatALocalizerTookIn) {
+  const MissionSetup setup =
+      load_mission(std::string(VIGIA_SOURCE_DIR) + "/config/missions/quixote-room.yaml",
+                   {"planner.policy=greedy", "timeout_s=37"});
+  Updates updates;
+  run_mission(setup, 8, {&updates});
+  EXPECT_GT(updates.dropped, 0);
+  EXPECT_GT(updates.count, 100);
+  EXPECT_EQ(updates.untold, 0);
+}
 
 }  // namespace
 }  // namespace vigia::mission
