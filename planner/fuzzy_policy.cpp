@@ -7,6 +7,8 @@
 
 #include <Eigen/Geometry>
 
+#include "vigia/planner/apparent_size.hpp"
+
 namespace vigia::planner {
 namespace {
 
@@ -60,8 +62,14 @@ class FuzzyPolicy final : public LookPolicy {
     judged.landmark = &landmark;
     judged.zoom_mm = zoom_mm;
     const double range = context.visibility.range(landmark, arrival.pose);
-    judged.suitability =
-        supervisors_.suitability(range, context.visibility.view_angle(landmark, arrival.pose));
+    const double best_zoom = zoom_for(landmark, range, parts_.head);
+    judged.suitability = supervisors_.suitability(
+        landmark, range, context.visibility.view_angle(landmark, arrival.pose),
+        parts_.head.zoom.at(zoom_mm.value_or(best_zoom)).px);
+    // A disc gives its direction from anywhere; points that cannot be read, or are seen frontally,
+    // are QUIXOTE's rejected patterns.
+    if (!disc_radius(landmark) && judged.suitability < parts_.perception.reject)
+      return std::nullopt;
     judged.sight_w = landmark.centre_w().head<2>() - arrival.pose.position();
     // The supervisor speaks of the robot's own axes.
     const Eigen::Matrix2d turned = Eigen::Rotation2Dd(-arrival.pose.theta).toRotationMatrix();
@@ -69,8 +77,8 @@ class FuzzyPolicy final : public LookPolicy {
                    supervisors_.choice(turned * judged.sight_w,
                                        turned * context.belief.covariance.topLeftCorner<2, 2>() *
                                            turned.transpose());
-    const double focal = parts_.head.zoom.at(zoom_for(landmark, range, parts_.head)).px;
-    const double wanted = parts_.head.radius_px * range / disc_radius(landmark).value_or(range);
+    const double focal = parts_.head.zoom.at(best_zoom).px;
+    const double wanted = wanted_radius(landmark, parts_.head) * range / extent_radius(landmark);
     judged.zoom_misfit = std::abs(std::log(focal / wanted));
     return judged;
   }

@@ -5,6 +5,7 @@
 
 #include "vigia/core/angle.hpp"
 #include "vigia/core/error.hpp"
+#include "vigia/planner/apparent_size.hpp"
 
 namespace vigia::planner {
 namespace {
@@ -38,6 +39,7 @@ double core_of(const FuzzyEngine& engine, std::size_t group) {
 
 FuzzySupervisors::FuzzySupervisors(const FuzzyRules& rules)
     : suitability_(read(rules.suitability, {"distance_m", "view_angle_deg"})),
+      points_(read(rules.points, {"distance_m", "view_angle_deg", "feature_px"})),
       groups_(read(rules.zoom_groups, {"distance_m"})),
       choice_(read(rules.choice, {"bearing_deg", "sigma_along_cm", "sigma_across_cm"})) {
   for (std::size_t group = 0; group < zoom_group_count(); ++group)
@@ -46,6 +48,18 @@ FuzzySupervisors::FuzzySupervisors(const FuzzyRules& rules)
 
 double FuzzySupervisors::suitability(double distance_m, double view_angle) {
   return std::clamp(suitability_.evaluate({distance_m, to_deg(view_angle)}), 0.0, 1.0);
+}
+
+double FuzzySupervisors::points_suitability(double distance_m, double view_angle,
+                                            double feature_px) {
+  return std::clamp(points_.evaluate({distance_m, to_deg(view_angle), feature_px}), 0.0, 1.0);
+}
+
+double FuzzySupervisors::suitability(const Landmark& landmark, double distance_m, double view_angle,
+                                     double focal_px) {
+  const auto feature = feature_width(landmark, distance_m, view_angle, focal_px);
+  return feature ? points_suitability(distance_m, view_angle, *feature)
+                 : suitability(distance_m, view_angle);
 }
 
 double FuzzySupervisors::choice(const Eigen::Vector2d& sight_r, const Eigen::Matrix2d& covariance) {

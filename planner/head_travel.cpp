@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vigia/planner/apparent_size.hpp"
 #include "vigia/planner/path_model.hpp"
 
 namespace vigia::planner {
@@ -51,12 +52,6 @@ bool can_be_held(const Landmark& landmark, const Arrival& arrival, const LookCon
   const auto to = free_pan(landmark, end, context.head_model);
   // From one side of the stop to the other is nearly a whole turn.
   return from && to && std::abs(*to - *from) < kPi && can_be_watched(landmark, context, end);
-}
-
-double zoom_for(const Landmark& landmark, double range_m, const HeadModel& head) {
-  const auto radius = disc_radius(landmark);
-  if (!radius) return head.zoom.min_zoom_mm();
-  return head.zoom.zoom_for_focal(head.radius_px * range_m / *radius);
 }
 
 double travel_time(const HeadReading& from, const HeadAngles& aim, double zoom_mm,

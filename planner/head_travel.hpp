@@ -11,9 +11,6 @@ struct Arrival {
   double station_m = 0.0;
 };
 
-/// The zoom position that shows a landmark at @p range_m with the wanted apparent radius.
-double zoom_for(const Landmark& landmark, double range_m, const HeadModel& head);
-
 /// Time for pan, tilt and zoom, each from rest to rest, the slowest counting, s.
 double travel_time(const HeadReading& from, const HeadAngles& aim, double zoom_mm,
                    const HeadModel& head);

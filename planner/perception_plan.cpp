@@ -1,9 +1,12 @@
 #include "vigia/planner/perception_plan.hpp"
 
+#include "zoom_classes.hpp"
 #include "zoom_schedule.hpp"
 
 #include <algorithm>
 #include <cmath>
+
+#include "vigia/planner/apparent_size.hpp"
 
 namespace vigia::planner {
 namespace {
@@ -13,9 +16,13 @@ constexpr double kSample_m = 0.02;
 /// Studies one landmark from the control areas of a path.
 class Study {
  public:
-  Study(const Path& path, const Visibility& visibility, FuzzySupervisors& supervisors,
-        const PerceptionParams& params)
-      : path_(path), visibility_(visibility), supervisors_(supervisors), params_(params) {}
+  Study(const Path& path, const Visibility& visibility, const HeadModel& head,
+        FuzzySupervisors& supervisors, const PerceptionParams& params)
+      : path_(path),
+        visibility_(visibility),
+        head_(head),
+        supervisors_(supervisors),
+        params_(params) {}
 
   LandmarkStudy of(const Landmark& landmark, const ControlArea& area) {
     LandmarkStudy study;
@@ -30,14 +37,17 @@ class Study {
       const Eigen::Vector2d towards = landmark.centre_w().head<2>() - position.pose.position();
       sight += towards.normalized();
       if (usable(landmark, position)) {
-        study.suitability +=
-            supervisors_.suitability(distance, visibility_.view_angle(landmark, position.pose));
+        study.suitability += supervisors_.suitability(
+            landmark, distance, visibility_.view_angle(landmark, position.pose),
+            head_.zoom.at(zoom_for(landmark, distance, head_)).px);
       } else {
         study.kept = false;
       }
       if (visibility_.sight(landmark, position.pose) != Sight::visible) continue;
       study.nearest_m = std::min(study.nearest_m, distance);
       study.farthest_m = std::max(study.farthest_m, distance);
+      study.most_oblique =
+          std::max(study.most_oblique, visibility_.view_angle(landmark, position.pose));
       const auto degrees = supervisors_.zoom_membership(distance);
       for (std::size_t g = 0; g < degrees.size(); ++g) membership[g] += degrees[g];
     }
@@ -69,14 +79,10 @@ class Study {
 
   const Path& path_;
   const Visibility& visibility_;
+  const HeadModel& head_;
   FuzzySupervisors& supervisors_;
   const PerceptionParams& params_;
 };
-
-/// The zoom of a group, for landmarks as large as @p radius_m.
-double group_zoom(double distance_m, double radius_m, const HeadModel& head) {
-  return head.zoom.zoom_for_focal(head.radius_px * distance_m / radius_m);
-}
 
 /// Zoom groups of an area's landmarks that are suitable, each with its best landmark.
 std::vector<ZoomOption> zoom_options(const AreaPlan& plan, const std::vector<double>& zooms,
@@ -93,15 +99,19 @@ std::vector<ZoomOption> zoom_options(const AreaPlan& plan, const std::vector<dou
 }
 
 /// Whether the landmark has a fair size over the whole area at the area's zoom.
-bool within_margin(const LandmarkStudy& study, double radius_m, double zoom_mm,
-                   const HeadModel& head, const PerceptionParams& params) {
+bool within_margin(const Landmark& landmark, const LandmarkStudy& study, const ZoomClass& of,
+                   double zoom_mm, const HeadModel& head, const PerceptionParams& params) {
+  if (study.farthest_m <= 0.0) return false;
   const double focal = head.zoom.at(zoom_mm).px;
-  return study.farthest_m > 0.0 && focal * radius_m / study.farthest_m >= params.least_radius_px &&
-         focal * radius_m / study.nearest_m <= params.most_radius_px;
+  const double largest = focal * of.radius_m / study.nearest_m;
+  if (const auto feature = feature_width(landmark, study.farthest_m, study.most_oblique, focal))
+    return *feature >= params.least_feature_px && largest <= wanted_radius(landmark, head);
+  return focal * of.radius_m / study.farthest_m >= params.least_radius_px &&
+         largest <= params.most_radius_px;
 }
 
-void preselect(AreaPlan& plan, double radius_m, const HeadModel& head,
-               const PerceptionParams& params) {
+void preselect(AreaPlan& plan, const LandmarkMap& landmarks, const ZoomClasses& classes,
+               const HeadModel& head, const PerceptionParams& params) {
   const auto add = [&plan](LandmarkId id) {
     auto& ids = plan.preselected;
     if (std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(id);
@@ -118,7 +128,8 @@ void preselect(AreaPlan& plan, double radius_m, const HeadModel& head,
     double most = 0.0;
     for (const LandmarkStudy& study : plan.visible) {
       if (!study.kept || study.suitability < params.reject ||
-          !within_margin(study, radius_m, plan.zoom_mm, head, params))
+          !within_margin(*landmarks.find(study.id), study, classes.of(study.id), plan.zoom_mm, head,
+                         params))
         continue;
       const double geometric = study.suitability * std::abs(study.sight_w(axis));
       if (geometric > most) {
@@ -128,14 +139,6 @@ void preselect(AreaPlan& plan, double radius_m, const HeadModel& head,
     }
     if (best != nullptr) add(best->id);
   }
-}
-
-/// The landmarks' radius that zooms are planned for: the smallest disc of the map.
-double planned_radius(const LandmarkMap& landmarks) {
-  double radius = 1e9;
-  for (const Landmark& landmark : landmarks.all())
-    if (const auto disc = disc_radius(landmark)) radius = std::min(radius, *disc);
-  return radius < 1e9 ? radius : 0.1;
 }
 
 }  // namespace
@@ -155,21 +158,24 @@ const AreaPlan* PerceptionPlan::at(double station_m) const {
 PerceptionPlan plan_perception(const Path& path, const LandmarkMap& landmarks,
                                const Visibility& visibility, const HeadModel& head,
                                FuzzySupervisors& supervisors, const PerceptionParams& params) {
-  const double radius = planned_radius(landmarks);
+  const ZoomClasses classes(landmarks, head, params.path.distance_ratio);
+  const std::size_t distances = supervisors.zoom_group_count();
   std::vector<double> zooms;
-  for (std::size_t group = 0; group < supervisors.zoom_group_count(); ++group)
-    zooms.push_back(group_zoom(supervisors.zoom_distance(group), radius, head));
+  for (const ZoomClass& each : classes.all())
+    for (std::size_t group = 0; group < distances; ++group)
+      zooms.push_back(each.zoom_for(supervisors.zoom_distance(group), head));
 
   const PathModel model = model_path(path, landmarks, visibility, params.path);
   PerceptionPlan plan;
   plan.turn_points = model.turn_points;
   std::vector<std::vector<ZoomOption>> options;
-  Study study(path, visibility, supervisors, params);
+  Study study(path, visibility, head, supervisors, params);
   for (const ControlArea& area : model.areas) {
     AreaPlan area_plan;
     area_plan.area = area;
     for (const Landmark& landmark : landmarks.all()) {
       LandmarkStudy of = study.of(landmark, area);
+      of.group += classes.index_of(landmark.id) * distances;
       if (of.visible_share >= params.visible_share) area_plan.visible.push_back(of);
     }
     options.push_back(zoom_options(area_plan, zooms, params.reject));
@@ -181,7 +187,7 @@ PerceptionPlan plan_perception(const Path& path, const LandmarkMap& landmarks,
     if (!taken[i]) continue;
     plan.areas[i].group = options[i][*taken[i]].group;
     plan.areas[i].zoom_mm = options[i][*taken[i]].zoom_mm;
-    preselect(plan.areas[i], radius, head, params);
+    preselect(plan.areas[i], landmarks, classes, head, params);
   }
   return plan;
 }

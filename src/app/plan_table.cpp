@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "vigia/core/error.hpp"
-#include "vigia/localization/disc_information.hpp"
+#include "vigia/localization/points_information.hpp"
 #include "vigia/planner/look_policy.hpp"
 #include "vigia/report/plan_picture.hpp"
 
@@ -22,7 +22,10 @@ class PolicyAtPositions {
       : setup_(setup),
         visibility_(visibility),
         head_(head),
-        information_(head.geometry, head.zoom, {setup.ekf.sensor, setup.look.radius_px}),
+        information_(localization::DiscInformation(head.geometry, head.zoom,
+                                                   {setup.ekf.sensor, setup.look.radius_px}),
+                     localization::PointsInformation(head.geometry, head.zoom,
+                                                     {setup.ekf.sensor, setup.look.fill})),
         policy_(planner::make_look_policy(
             policy,
             {setup.look.fixed_landmark, RandomStream(setup.seed, "look policy"),
@@ -48,7 +51,7 @@ class PolicyAtPositions {
   const mission::MissionSetup& setup_;
   const planner::Visibility& visibility_;
   const planner::HeadModel& head_;
-  localization::DiscInformation information_;
+  localization::LandmarkInformation information_;
   std::unique_ptr<planner::LookPolicy> policy_;
 };
 
@@ -92,8 +95,8 @@ PlanTable make_plan(const mission::MissionSetup& setup, const std::string& polic
   const auto& robot = setup.robot.robot;
   const planner::Visibility visibility(setup.world.plan, robot.head, robot.head_limits,
                                        setup.look.visibility);
-  const planner::HeadModel head{robot.head, robot.head_limits, setup.robot.zoom,
-                                setup.look.radius_px, setup.look.dwell_s};
+  const planner::HeadModel head{robot.head,           robot.head_limits,  setup.robot.zoom,
+                                setup.look.radius_px, setup.look.dwell_s, setup.look.fill};
   planner::FuzzySupervisors supervisors(setup.look.rules);
   const auto plan = planner::plan_perception(setup.path, setup.world.landmarks, visibility, head,
                                              supervisors, setup.look.perception);

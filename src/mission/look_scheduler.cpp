@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "vigia/planner/apparent_size.hpp"
+
 namespace vigia::mission {
 namespace {
 
@@ -15,8 +17,9 @@ LookScheduler::LookScheduler(const MissionSetup& setup, const InformationModel& 
       information_(information),
       visibility_(setup.world.plan, setup.robot.robot.head, setup.robot.robot.head_limits,
                   setup.look.visibility),
-      head_model_{setup.robot.robot.head, setup.robot.robot.head_limits, setup.robot.zoom,
-                  setup.look.radius_px, setup.look.dwell_s},
+      head_model_{setup.robot.robot.head, setup.robot.robot.head_limits,
+                  setup.robot.zoom,       setup.look.radius_px,
+                  setup.look.dwell_s,     setup.look.fill},
       policy_(planner::make_look_policy(
           setup.look.policy,
           {setup.look.fixed_landmark, RandomStream(seed, "look policy"), setup.world.landmarks,
@@ -57,14 +60,9 @@ std::optional<LookScheduler::Decision> LookScheduler::choose(Stamp now, const Be
   order.issued = now;
   order.expires = now + Duration::from_seconds(setup_.look.timeout_s);
   order.dwell_s = setup_.look.dwell_s;
-  order.radius_px = wanted_radius(*setup_.world.landmarks.find(choice->landmark));
+  order.radius_px =
+      planner::wanted_radius(*setup_.world.landmarks.find(choice->landmark), head_model_);
   return Decision{order, choice->suitability, choice->reason};
-}
-
-/// Discs of one size; patterns and tags as large as the image takes them.
-double LookScheduler::wanted_radius(const Landmark& landmark) const {
-  if (disc_radius(landmark)) return setup_.look.radius_px;
-  return setup_.look.fill * 0.5 * setup_.robot.zoom.at(setup_.robot.zoom.min_zoom_mm()).height;
 }
 
 std::optional<GazeOrder> LookScheduler::prepare(Stamp now, const Belief& belief,

@@ -54,8 +54,6 @@ class LookScheduler {
   void fused(double travelled_m, LandmarkId landmark);
 
  private:
-  double wanted_radius(const Landmark& landmark) const;
-
   const MissionSetup& setup_;
   const InformationModel& information_;
   planner::Visibility visibility_;

@@ -128,7 +128,7 @@ void Loop::tick() {
                   command_,
                   recovering_ ? GazeState::search : gaze_.state(),
                   gaze_.current(),
-                  look_,
+                  observation_ ? sensor_of(*observation_).look : look_,
                   sighting_ ? std::optional(sighting_->status) : std::nullopt,
                   observation_ ? &*observation_ : nullptr,
                   centring,
@@ -267,7 +267,6 @@ void Loop::drop_look(const std::string& reason) {
   gaze_.cancel();
   request_ = servo::TrackRequest::none;
   acquired_.reset();
-  observation_.reset();
 }
 
 void Loop::steer() {
@@ -300,8 +299,10 @@ void Loop::steer() {
 
 /// The feature where the belief's motion since its exposure has carried it.
 std::optional<servo::GazeSighting> Loop::sighting_now() const {
-  if (!observation_) return std::nullopt;
+  // A look that was dropped in this tick, and perhaps followed by another, has no sighting.
+  if (!observation_ || !gaze_.current()) return std::nullopt;
   const SensorSnapshot& then = sensor_of(*observation_);
+  if (then.look != look_) return std::nullopt;
   const Landmark* landmark = setup_.world.landmarks.find(gaze_.current()->landmark);
   const ImageExtent extent = image_extent(*observation_, landmark);
   const servo::GazeSighting sighting{extent.centre, extent.radius_px};

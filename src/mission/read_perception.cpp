@@ -20,6 +20,7 @@ void read_perception(MapReader& look, LookParams& params) {
   areas.finish();
   MapReader fuzzy = look.map("fuzzy");
   read_rules(fuzzy, "suitability", params.rules.suitability);
+  read_rules(fuzzy, "points", params.rules.points);
   read_rules(fuzzy, "zoom_groups", params.rules.zoom_groups);
   read_rules(fuzzy, "choice", params.rules.choice);
   planner::PerceptionParams& plan = params.perception;
@@ -30,6 +31,7 @@ void read_perception(MapReader& look, LookParams& params) {
   plan.least_radius_px = fuzzy.number("least_radius_px", {1.0, 1000.0}, plan.least_radius_px);
   plan.most_radius_px =
       fuzzy.number("most_radius_px", {plan.least_radius_px, 1000.0}, plan.most_radius_px);
+  plan.least_feature_px = fuzzy.number("least_feature_px", {1.0, 100.0}, plan.least_feature_px);
   fuzzy.finish();
   // A rule base that is wrong is reported when the mission is read, not when it is driven.
   const planner::FuzzySupervisors readable(params.rules);

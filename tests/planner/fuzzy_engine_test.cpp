@@ -72,6 +72,7 @@ TEST(FuzzyEngine, AgreesWithAnIndependentMamdaniForEveryShapeAndOperator) {
 TEST(FuzzyEngine, AgreesWithAnIndependentMamdaniForTheRuleBasesThatAreShipped) {
   const FuzzyRules rules;
   EXPECT_LE(largest_difference(rules.suitability.text), 1e-9);
+  EXPECT_LE(largest_difference(rules.points.text), 1e-9);
   EXPECT_LE(largest_difference(rules.zoom_groups.text), 1e-9);
   EXPECT_LE(largest_difference(rules.choice.text), 1e-9);
 }

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "vigia/planner/apparent_size.hpp"
+
 namespace vigia::planner {
 namespace {
 

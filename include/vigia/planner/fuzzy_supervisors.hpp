@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include "vigia/core/landmark.hpp"
 #include "vigia/planner/fuzzy_engine.hpp"
 
 namespace vigia::planner {
@@ -18,10 +19,12 @@ struct FuzzyText {
 /// The rule bases of the fuzzy planner. The defaults are those of config/fuzzy/, built in.
 struct FuzzyRules {
   FuzzyText suitability = default_suitability();
+  FuzzyText points = default_points();
   FuzzyText zoom_groups = default_zoom_groups();
   FuzzyText choice = default_choice();
 
   static FuzzyText default_suitability();
+  static FuzzyText default_points();
   static FuzzyText default_zoom_groups();
   static FuzzyText default_choice();
 };
@@ -33,9 +36,16 @@ class FuzzySupervisors {
   /// Throws InputError for a rule base that can't be read or has other inputs than these.
   explicit FuzzySupervisors(const FuzzyRules& rules);
 
-  /// First supervisor (§2.2): suitability, in [0, 1], of a landmark at a distance (m) under a view
+  /// First supervisor (§2.2): suitability, in [0, 1], of a disc at a distance (m) under a view
   /// angle (rad).
   double suitability(double distance_m, double view_angle);
+
+  /// The same of a pattern or tag, of which feature_width() is @p feature_px.
+  double points_suitability(double distance_m, double view_angle, double feature_px);
+
+  /// That of any landmark, by its kind, at a focal length.
+  double suitability(const Landmark& landmark, double distance_m, double view_angle,
+                     double focal_px);
 
   std::size_t zoom_group_count() const { return groups_.term_names(0).size(); }
   std::string zoom_group_name(std::size_t group) const { return groups_.term_names(0).at(group); }
@@ -53,6 +63,7 @@ class FuzzySupervisors {
 
  private:
   FuzzyEngine suitability_;
+  FuzzyEngine points_;
   FuzzyEngine groups_;
   FuzzyEngine choice_;
   std::vector<double> zoom_distances_;

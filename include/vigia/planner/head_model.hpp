@@ -11,8 +11,9 @@ struct HeadModel {
   HeadGeometry geometry;
   HeadLimits limits;
   ZoomCalibration zoom;
-  double radius_px = 24.0;  ///< apparent radius for which a zoom is set
+  double radius_px = 24.0;  ///< apparent radius of a disc for which a zoom is set
   double dwell_s = 1.0;     ///< how long a landmark is watched
+  double fill = 0.8;        ///< half the image's height that a pattern or tag is to fill
 };
 
 }  // namespace vigia::planner

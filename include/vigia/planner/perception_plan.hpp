@@ -22,9 +22,11 @@ struct PerceptionParams {
   double least_value = 0.9;
   /// Standing, landmarks along both axes are taken in turn while both axes' σ exceed this.
   double both_uncertain_m = 0.05;
-  double zoom_cost_per_s = 0.2;   ///< suitability that a second of the zoom's travel outweighs
-  double least_radius_px = 10.0;  ///< at the area's zoom; the margin that needs no optics move …
-  double most_radius_px = 80.0;   ///< … on both sides
+  double zoom_cost_per_s = 0.2;  ///< suitability that a second of the zoom's travel outweighs
+  /// The margin that needs no optics move at the area's zoom. Discs by their radius:
+  double least_radius_px = 10.0;
+  double most_radius_px = 80.0;
+  double least_feature_px = 5.0;  ///< points by feature_width(); at most the image takes them
 };
 
 /// What the plan knows of a landmark in a control area.
@@ -35,7 +37,10 @@ struct LandmarkStudy {
   double suitability = 0.0;    ///< mean over the control positions; 0 where it is not usable
   double nearest_m = 0.0;      ///< over the control positions that see it
   double farthest_m = 0.0;
-  std::size_t group = 0;  ///< zoom group that its distances belong to most
+  double most_oblique = 0.0;  ///< view angle, rad
+  /// Zoom group that its distances belong to most; each kind and size of landmark has groups of its
+  /// own.
+  std::size_t group = 0;
   Eigen::Vector2d sight_w = Eigen::Vector2d::UnitX();  ///< mean direction robot → landmark, unit
 };
 
@@ -63,8 +68,10 @@ struct PerceptionPlan {
 /// control position, the unsuitable rejected, the others grouped by distance. The sequence of zoom
 /// groups is the one with the fewest changes and, among those, with the greatest suitability less
 /// the cost of the zoom's travel, by dynamic programming over the areas: the zoom is the slowest
-/// axis. Preselected are the most suitable landmark of the group, and those most suitable to reduce
-/// the uncertainty along x and along y that can be watched without an optics move.
+/// axis. At its group's distance a disc has the wanted size; a pattern or tag is so much smaller
+/// that one nearer by the root of distance_ratio fills the image. Preselected are the most suitable
+/// landmark of the group, and those most suitable to reduce the uncertainty along x and along y
+/// that can be watched without an optics move.
 PerceptionPlan plan_perception(const Path& path, const LandmarkMap& landmarks,
                                const Visibility& visibility, const HeadModel& head,
                                FuzzySupervisors& supervisors, const PerceptionParams& params);
