@@ -208,6 +208,12 @@ void Loop::plan() {
   std::optional<LookScheduler::Decision> decision;
   if (idle && (uneasy || demand != planner::LookDemand::none))
     decision = scheduler_.choose(now_, belief(), head_, going);
+  // Two landmarks were not where they should be, and there is no third to ask.
+  if (idle && !decision && different_failed() > 1) {
+    localizers_[primary_]->lose();
+    begin_recovery();
+    return;
+  }
   // Where there is nothing to look at, standing helps nobody.
   const bool stop = uneasy && (!idle || decision);
   tell_limits(demand, stop);
@@ -235,12 +241,14 @@ void Loop::begin_look(const LookScheduler::Decision& decision) {
   tell("look", numbers, {{"reason", decision.reason}});
 }
 
-/// One landmark that fails again and again is missing; several are a sign of being elsewhere.
+std::size_t Loop::different_failed() const {
+  return std::set<LandmarkId>(failed_.begin(), failed_.end()).size();
+}
+
 bool Loop::nothing_is_where_it_should_be() const {
   const auto enough = static_cast<std::size_t>(setup_.look.failures_to_lose);
   if (failed_.size() < enough) return false;
-  const std::set<LandmarkId> different(failed_.begin(), failed_.end());
-  return different.size() > 1 || failed_.size() >= 2 * enough;
+  return different_failed() > 1 || failed_.size() >= 2 * enough;
 }
 
 void Loop::tell_limits(planner::LookDemand demand, bool stop) {

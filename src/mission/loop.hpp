@@ -53,6 +53,9 @@ class Loop {
               const std::vector<RoundObstacle>& others = {});
   void note_failure(LandmarkId landmark);
   void begin_look(const LookScheduler::Decision& decision);
+  /// Landmarks at which the looks since the last fused one showed nothing.
+  std::size_t different_failed() const;
+  /// One landmark that fails again and again is missing; several are a sign of being elsewhere.
   bool nothing_is_where_it_should_be() const;
   void drop_look(const std::string& reason);
   /// The story of the two limits: limit_1, stop, restart.

@@ -39,6 +39,21 @@ TEST(Recovery, ARobotThatWasToldAWrongStartSaysItIsLostFindsItselfAndArrives) {
   }
 }
 
+TEST(Recovery, TwoLandmarksThatAreNotThereSufficeWhereThereIsNoThirdToLookAt) {
+  const std::string discs =
+      "world.landmarks=[{id: 0, kind: disc, centre_m: [3.4, 3.2, 1.6], normal_deg: 180, radius_m: "
+      "0.1}, {id: 4, kind: disc, centre_m: [0, 3.6, 1.9], normal_deg: 0, radius_m: 0.1}]";
+  const MissionSetup setup =
+      load_mission(std::string(VIGIA_SOURCE_DIR) + "/config/missions/armingol-room.yaml",
+                   {discs, "disturbances.missing_landmarks={probability: 1, at_most_one_in: 1}",
+                    "planner.exclude_s=60", "timeout_s=30"});
+  Story story;
+  run_mission(setup, 1, {&story});
+  const auto lost = std::find(story.kinds.begin(), story.kinds.end(), "lost");
+  ASSERT_NE(lost, story.kinds.end());
+  EXPECT_EQ(std::count(story.kinds.begin(), lost, "expired"), 2);
+}
+
 TEST(Recovery, ARobotThatSeesNoLandmarkGivesUpAndSaysSo) {
   MissionSetup setup = mission_with_prior_off_by({});
   // A belief that is lost at once, and a sweep that looks at the floor.
