@@ -122,8 +122,10 @@ bool BlobFinder::make_seed(const Chord& chord, Seed& seed) const {
   const int u = (chord.first + chord.last) / 2;
   const int v = chord.v;
   std::array<double, 5> samples{};
-  for (int k = 0; k < 5; ++k)
-    samples[static_cast<std::size_t>(k)] = at(u + (k - 2) * std::max(1, length / 8), v);
+  for (int k = 0; k < 5; ++k) {
+    const int at_u = u + (k - 2) * std::max(1, length / 8);
+    samples[static_cast<std::size_t>(k)] = at(std::clamp(at_u, window_.u, window_.right() - 1), v);
+  }
   seed.disc = median_of_five(samples);
   const auto level = [&](int at_u) {
     const int inner = std::clamp(at_u, window_.u + 1, window_.right() - 2);
