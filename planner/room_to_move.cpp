@@ -5,22 +5,12 @@
 #include <limits>
 
 #include "vigia/core/angle.hpp"
+#include "vigia/core/plane_geometry.hpp"
 
 namespace vigia::planner {
 namespace {
 
 using Eigen::Vector2d;
-
-double cross(const Vector2d& a, const Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
-double point_segment_distance(const Vector2d& p, const Vector2d& a, const Vector2d& b) {
-  const Vector2d ab = b - a;
-  const double length2 = ab.squaredNorm();
-  const double t = length2 > 0.0 ? std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0.0;
-  return (p - a - t * ab).norm();
-}
 
 bool cross_each_other(const Vector2d& a0, const Vector2d& a1, const Vector2d& b0,
                       const Vector2d& b1) {
@@ -41,8 +31,8 @@ bool boxes_apart(const Vector2d& a0, const Vector2d& a1, const Vector2d& b0, con
 double segment_distance(const Vector2d& a0, const Vector2d& a1, const Vector2d& b0,
                         const Vector2d& b1) {
   if (cross_each_other(a0, a1, b0, b1)) return 0.0;
-  return std::min({point_segment_distance(a0, b0, b1), point_segment_distance(a1, b0, b1),
-                   point_segment_distance(b0, a0, a1), point_segment_distance(b1, a0, a1)});
+  return std::min({distance_to_segment(a0, b0, b1), distance_to_segment(a1, b0, b1),
+                   distance_to_segment(b0, a0, a1), distance_to_segment(b1, a0, a1)});
 }
 
 double RoomToMove::clearance(const Vector2d& p) const {
@@ -60,7 +50,7 @@ bool RoomToMove::passes(const Vector2d& a, const Vector2d& b) const {
                               segment_distance(a, b, face.a, face.b) >= radius_m_;
                      }) &&
          std::all_of(others_.begin(), others_.end(), [&](const RoundObstacle& other) {
-           return point_segment_distance(other.centre, a, b) >= radius_m_ + other.radius_m;
+           return distance_to_segment(other.centre, a, b) >= radius_m_ + other.radius_m;
          });
 }
 
@@ -75,7 +65,7 @@ std::optional<Vector2d> RoomToMove::retreat(const Vector2d& p) const {
   for (int ring = 1; ring <= kRings; ++ring) {
     for (int k = 0; k < kDirections; ++k) {
       const double angle = 2.0 * kPi * k / kDirections;
-      const Vector2d q = p + ring * kRingSpacing * Vector2d(std::cos(angle), std::sin(angle));
+      const Vector2d q = p + ring * kRingSpacing * unit_vector(angle);
       if (fits(q) && smaller.passes(p, q)) return q;
     }
   }

@@ -16,6 +16,7 @@
 #include <ompl/util/Console.h>
 
 #include "vigia/core/angle.hpp"
+#include "vigia/core/plane_geometry.hpp"
 #include "vigia/core/random.hpp"
 
 namespace vigia::planner {
@@ -37,7 +38,7 @@ void append_ring(const RoomToMove& room, const Vector2d& centre, double radius_m
   constexpr int kDirections = 16;
   for (int k = 0; k < kDirections; ++k) {
     const double angle = 2.0 * kPi * k / kDirections;
-    const Vector2d p = centre + 1.02 * radius_m * Vector2d(std::cos(angle), std::sin(angle));
+    const Vector2d p = centre + 1.02 * radius_m * unit_vector(angle);
     if (room.fits(p)) places.push_back(p);
   }
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "vigia/core/angle.hpp"
+#include "vigia/core/plane_geometry.hpp"
 #include "vigia/core/random.hpp"
 #include "vigia/sim/scene.hpp"
 
@@ -30,7 +31,7 @@ Clutter read_clutter(MapReader& reader, const WorldMap& world) {
       throw reader.error("centre_m", "clutter on the floor must have height 0");
     return clutter;
   }
-  const Eigen::Vector2d normal(std::cos(clutter.normal_yaw), std::sin(clutter.normal_yaw));
+  const Eigen::Vector2d normal = unit_vector(clutter.normal_yaw);
   const Eigen::Vector2d p = clutter.centre_w.head<2>();
   const bool on_face =
       std::any_of(world.plan.faces().begin(), world.plan.faces().end(), [&](const Wall& face) {

@@ -1,6 +1,7 @@
 #include "body_view.hpp"
 
 #include "simd.hpp"
+#include "single.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,17 +10,6 @@ namespace vigia::sim {
 namespace {
 
 using imaging::Window;
-
-std::array<float, 9> single(const Eigen::Matrix3d& m) {
-  std::array<float, 9> out{};
-  for (int i = 0; i < 9; ++i)
-    out[static_cast<std::size_t>(i)] = static_cast<float>(m(i / 3, i % 3));
-  return out;
-}
-
-std::array<float, 3> single(const Eigen::Vector3d& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
 
 /// Pixels round the image of the box that holds a limb; the whole frame when part of it is behind
 /// the camera.

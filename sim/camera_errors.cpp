@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "vigia/core/angle.hpp"
+#include "vigia/core/plane_geometry.hpp"
 #include "vigia/core/random.hpp"
 
 namespace vigia::sim {
@@ -28,8 +29,7 @@ CameraErrors::CameraErrors(const DisturbanceParams& disturbances, std::uint64_t 
     RandomStream random(seed, "principal point");
     const double direction = random.uniform(-kPi, kPi);
     const double bow = random.uniform(-0.25, 0.25);
-    drift_ = disturbances.principal_point->drift_px *
-             Eigen::Vector2d(std::cos(direction), std::sin(direction));
+    drift_ = disturbances.principal_point->drift_px * unit_vector(direction);
     bow_ = bow * Eigen::Vector2d(-drift_.y(), drift_.x());
   }
   if (disturbances.mounting) {

@@ -3,6 +3,7 @@
 #include "disc_coverage.hpp"
 #include "rays.hpp"
 #include "simd.hpp"
+#include "single.hpp"
 #include "tag_coverage.hpp"
 
 #include <algorithm>
@@ -176,12 +177,6 @@ void square_row(const std::array<float, 9>& H, float px_per_x, float px_per_y,
     down = down < 0.0F ? 0.0F : (down > 1.0F ? 1.0F : down);
     out[i] = across * down;
   }
-}
-
-std::array<float, 9> single(const Eigen::Matrix3d& H) {
-  std::array<float, 9> h{};
-  for (int i = 0; i < 9; ++i) h[static_cast<std::size_t>(i)] = static_cast<float>(H(i / 3, i % 3));
-  return h;
 }
 
 }  // namespace

@@ -3,18 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vigia/core/plane_geometry.hpp"
+
 namespace vigia::sim {
 namespace {
 
 using Eigen::Vector2d;
-
-double cross(const Vector2d& a, const Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
-Vector2d unit(double angle) {
-  return {std::cos(angle), std::sin(angle)};
-}
 
 /// A sector of the plane with its tip in the origin, narrower than a half-plane.
 struct Sector {
@@ -70,7 +64,7 @@ std::optional<double> circle_in_sector(const Sector& sector, const Vector2d& cen
 std::optional<double> nearest_in_cone(const FloorPlan& plan, const std::vector<Pillar>& pillars,
                                       const Eigen::Vector2d& p, double direction, double cone,
                                       double reach_m, double above_m) {
-  const Sector sector{unit(direction - 0.5 * cone), unit(direction + 0.5 * cone)};
+  const Sector sector{unit_vector(direction - 0.5 * cone), unit_vector(direction + 0.5 * cone)};
   double nearest = reach_m;
   bool echo = false;
   const auto take = [&](const std::optional<double>& distance) {

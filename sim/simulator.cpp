@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "vigia/core/plane_geometry.hpp"
+
 namespace vigia::sim {
 namespace {
 
@@ -78,8 +80,7 @@ bool Simulator::kidnap() {
 
 Bystander Simulator::bystander() const {
   const RobotTruth& truth = robot_.truth();
-  return {truth.pose.position(),
-          truth.base.v * Eigen::Vector2d(std::cos(truth.pose.theta), std::sin(truth.pose.theta)),
+  return {truth.pose.position(), truth.base.v * unit_vector(truth.pose.theta),
           setup_.robot.radius_m};
 }
 

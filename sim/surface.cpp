@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vigia/core/plane_geometry.hpp"
 #include "vigia/core/random.hpp"
 
 namespace vigia::sim {
@@ -12,10 +13,6 @@ namespace {
 
 Eigen::Vector3d lift(const Eigen::Vector2d& p, double z) {
   return {p.x(), p.y(), z};
-}
-
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
 }
 
 /// Triangles of a simple polygon by ear clipping.

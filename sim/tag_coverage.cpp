@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "vigia/core/plane_geometry.hpp"
+
 namespace vigia::sim {
 namespace {
 
@@ -24,7 +26,7 @@ double area(const Polygon& polygon) {
   for (std::size_t i = 0; i < polygon.count; ++i) {
     const Eigen::Vector2d a = polygon.corners[i] - polygon.corners[0];
     const Eigen::Vector2d b = polygon.next(i) - polygon.corners[0];
-    twice += a.x() * b.y() - a.y() * b.x();
+    twice += cross(a, b);
   }
   return 0.5 * std::abs(twice);
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "vigia/core/plane_geometry.hpp"
 #include "vigia/core/random.hpp"
 
 namespace vigia::sim {
@@ -11,7 +12,7 @@ namespace {
 
 constexpr double kFromEdge = 0.3;      // m, of clutter on its face
 constexpr double kFromLandmark = 0.6;  // m, between the middles
-constexpr int kAttempts = 100;
+constexpr int kMarkAttempts = 100;
 
 void displace(const MapErrorParams& params, std::uint64_t seed, std::vector<Landmark>& landmarks) {
   RandomStream random(seed, "map error");
@@ -50,7 +51,7 @@ class WallPlaces {
 
   /// A place with the direction of its outward normal; false when the walls are full.
   bool draw(Clutter& mark) {
-    for (int attempt = 0; attempt < kAttempts && !faces_.empty(); ++attempt) {
+    for (int attempt = 0; attempt < kMarkAttempts && !faces_.empty(); ++attempt) {
       const Wall& face = *faces_[random_.index(faces_.size())];
       const Eigen::Vector2d along = (face.b - face.a).normalized();
       const double s = random_.uniform(kFromEdge, (face.b - face.a).norm() - kFromEdge);
@@ -58,9 +59,7 @@ class WallPlaces {
       const bool left = random_.index(2) == 0;
       mark.centre_w << face.a + s * along, z;
       mark.normal_yaw = std::atan2(along.y(), along.x()) + (left ? 0.5 : -0.5) * kPi;
-      const Eigen::Vector2d before =
-          mark.centre_w.head<2>() +
-          0.1 * Eigen::Vector2d(std::cos(mark.normal_yaw), std::sin(mark.normal_yaw));
+      const Eigen::Vector2d before = mark.centre_w.head<2>() + 0.1 * unit_vector(mark.normal_yaw);
       const bool free = world_.plan.clearance(before) > 0.0 &&
                         std::all_of(taken_.begin(), taken_.end(), [&](const Eigen::Vector3d& p) {
                           return (p - mark.centre_w).norm() > kFromLandmark;

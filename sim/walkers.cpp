@@ -5,15 +5,17 @@
 #include <cmath>
 #include <limits>
 
+#include "vigia/core/plane_geometry.hpp"
+
 namespace vigia::sim {
 namespace {
 
 using Eigen::Vector2d;
 
-constexpr int kAttempts = 200;
+constexpr int kWalkAttempts = 200;
 constexpr double kForesight_s = 1.0;
 constexpr std::array<double, 5> kInstants_s{0.1, 0.25, 0.5, 0.75, kForesight_s};
-constexpr double kFromWall = 0.05;       // m, beyond the radius
+constexpr double kWalkFromWall = 0.05;   // m, beyond the radius
 constexpr double kLeast = 0.1;           // m, from the robot's hull when there is no other way
 constexpr double kTouching = 0.02;       // m, from the robot's hull: nobody steps nearer
 constexpr double kFromEachOther = 0.15;  // m, between hulls
@@ -21,10 +23,6 @@ constexpr double kAtGoal = 0.15;         // m
 constexpr double kFromStart = 1.2;       // m, from the robot's hull when the drive begins
 constexpr double kPatience = 2.0;        // times what the leg takes undisturbed
 constexpr double kTurnRate = 4.0;        // rad/s
-
-Vector2d unit(double angle) {
-  return {std::cos(angle), std::sin(angle)};
-}
 
 }  // namespace
 
@@ -47,11 +45,11 @@ Vector2d Walkers::free_place(const Bystander& robot) {
   const Vector2d high = plan_.max_corner();
   Vector2d best = robot.position;
   double best_room = -std::numeric_limits<double>::infinity();
-  for (int i = 0; i < kAttempts; ++i) {
+  for (int i = 0; i < kWalkAttempts; ++i) {
     const double x = random_.uniform(low.x(), high.x());
     const double y = random_.uniform(low.y(), high.y());
     const Vector2d p(x, y);
-    double room = plan_.clearance(p) - params_.radius_m - kFromWall;
+    double room = plan_.clearance(p) - params_.radius_m - kWalkFromWall;
     room = std::min(room,
                     (p - robot.position).norm() - robot.radius_m - params_.radius_m - kFromStart);
     for (const Walker& other : walkers_)
@@ -69,7 +67,7 @@ bool Walkers::straight_way(const Vector2d& from, const Vector2d& to) const {
   const double length = (to - from).norm();
   const int steps = 1 + static_cast<int>(length / 0.1);
   for (int i = 1; i <= steps; ++i)
-    if (plan_.clearance(from + (to - from) * i / steps) < params_.radius_m + kFromWall)
+    if (plan_.clearance(from + (to - from) * i / steps) < params_.radius_m + kWalkFromWall)
       return false;
   return true;
 }
@@ -78,7 +76,7 @@ void Walkers::choose_goal(Walker& walker) {
   const Vector2d low = plan_.min_corner();
   const Vector2d high = plan_.max_corner();
   walker.goal = walker.position;
-  for (int i = 0; i < kAttempts && walker.goal == walker.position; ++i) {
+  for (int i = 0; i < kWalkAttempts && walker.goal == walker.position; ++i) {
     const double x = random_.uniform(low.x(), high.x());
     const double y = random_.uniform(low.y(), high.y());
     const Vector2d p(x, y);
@@ -101,7 +99,7 @@ double Walkers::room_on(const Walker& walker, const Vector2d& velocity, const By
                                 2.0 * params_.radius_m - kFromEachOther);
     }
     if (velocity.squaredNorm() > 0.0)
-      room = std::min(room, plan_.clearance(p) - params_.radius_m - kFromWall);
+      room = std::min(room, plan_.clearance(p) - params_.radius_m - kWalkFromWall);
   }
   return room;
 }
@@ -119,7 +117,7 @@ Vector2d Walkers::escape(const Walker& walker, const Bystander& robot) const {
   Vector2d best = Vector2d::Zero();
   double most = worth(best);
   for (int i = 0; i < kDirections; ++i) {
-    const Vector2d velocity = params_.speed_mps * unit(2.0 * kPi * i / kDirections);
+    const Vector2d velocity = params_.speed_mps * unit_vector(2.0 * kPi * i / kDirections);
     const double value = worth(velocity);
     if (value <= most) continue;
     best = velocity;
@@ -136,7 +134,7 @@ Vector2d Walkers::choose_velocity(const Walker& walker, const Bystander& robot) 
   const double wanted =
       to_goal.norm() > 1e-6 ? std::atan2(to_goal.y(), to_goal.x()) : walker.heading;
   for (const double off : {0.0, 25.0, -25.0, 50.0, -50.0, 75.0, -75.0}) {
-    Vector2d velocity = walker.pace * unit(wanted + from_deg(off));
+    Vector2d velocity = walker.pace * unit_vector(wanted + from_deg(off));
     if (room_on(walker, velocity, robot, params_.distance_m) >= 0.0) return velocity;
   }
   return may_stand ? stand : escape(walker, robot);

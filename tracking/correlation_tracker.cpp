@@ -2,6 +2,7 @@
 
 #include "disc_finder.hpp"
 #include "disc_template.hpp"
+#include "lost_feature.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -34,13 +35,6 @@ EllipseShape moved(EllipseShape shape, int du, int dv, double scale) {
   shape.centre += Eigen::Vector2d(du, dv);
   shape.sigma *= scale * scale;
   return shape;
-}
-
-EllipseFeature lost(FeatureStatus status, double score) {
-  EllipseFeature feature;
-  feature.status = status;
-  feature.score = score;
-  return feature;
 }
 
 }  // namespace
@@ -78,13 +72,13 @@ EllipseFeature CorrelationTracker::State::refine(const vpImage<unsigned char>& i
       image, window, start,
       {parameters_.template_margin_px, parameters_.blur_px, parameters_.max_iterations});
   const double score = correlation_score(sign_ * match.correlation);
-  if (!match.converged) return lost(FeatureStatus::wrong_object, score);
-  if (score < parameters_.acceptance) return lost(FeatureStatus::not_found, score);
+  if (!match.converged) return lost_ellipse(FeatureStatus::wrong_object, score);
+  if (score < parameters_.acceptance) return lost_ellipse(FeatureStatus::not_found, score);
   const Eigen::Vector2d half = half_extent(match.shape);
   const Eigen::Vector2d& c = match.shape.centre;
   if (c.x() < half.x() || c.y() < half.y() || c.x() + half.x() > frame.width - 1 ||
       c.y() + half.y() > frame.height - 1)
-    return lost(FeatureStatus::cut_by_border, score);
+    return lost_ellipse(FeatureStatus::cut_by_border, score);
   if (gate != nullptr) {
     const Eigen::Vector2d off = c - gate->shape.centre;
     const double size =
@@ -92,16 +86,16 @@ EllipseFeature CorrelationTracker::State::refine(const vpImage<unsigned char>& i
     const double distance = std::max(off.dot(gate->centre_covariance.inverse() * off),
                                      std::pow(size / gate->log_size_sigma, 2));
     if (distance > parameters_.gate_sigmas * parameters_.gate_sigmas)
-      return lost(FeatureStatus::wrong_object, score);
+      return lost_ellipse(FeatureStatus::wrong_object, score);
   }
   // A correlation over all pixels hardly tells a hidden arc, another form or a cut outline.
   const EdgeFit outline =
       fitter_.fit(image, window, match.shape,
                   {match.ground - match.contrast, match.ground, parameters_.blur_px});
   const FeatureStatus judged = judge_fit(outline, parameters_.finder);
-  if (judged != FeatureStatus::found) return lost(judged, score);
+  if (judged != FeatureStatus::found) return lost_ellipse(judged, score);
   if ((outline.shape.centre - c).norm() > parameters_.max_outline_offset_px)
-    return lost(FeatureStatus::occluded, score);
+    return lost_ellipse(FeatureStatus::occluded, score);
 
   EllipseFeature feature;
   feature.status = FeatureStatus::found;
@@ -128,7 +122,7 @@ EllipseFeature CorrelationTracker::State::search(Canvas& canvas, const Gate& gat
   window = intersect({window.u - reach_u, window.v - reach_v, window.width + 2 * reach_u,
                       window.height + 2 * reach_v},
                      frame);
-  if (window.empty()) return lost(FeatureStatus::not_found, 0.0);
+  if (window.empty()) return lost_ellipse(FeatureStatus::not_found, 0.0);
   canvas.require(window);
   const vpImage<unsigned char>& image = canvas.image();
 
@@ -177,9 +171,9 @@ EllipseFeature CorrelationTracker::State::search(Canvas& canvas, const Gate& gat
     }
     if (best >= parameters_.certainty) break;
   }
-  if (!any_fits) return lost(FeatureStatus::cut_by_border, 0.0);
+  if (!any_fits) return lost_ellipse(FeatureStatus::cut_by_border, 0.0);
   // The refinement may gain what the grid of positions and scales has lost.
-  if (best < 0.6 * parameters_.acceptance) return lost(FeatureStatus::not_found, best);
+  if (best < 0.6 * parameters_.acceptance) return lost_ellipse(FeatureStatus::not_found, best);
   return refine(image, window, best_shape, &gate, frame);
 }
 
@@ -206,7 +200,7 @@ EllipseFeature CorrelationTracker::acquire(Canvas& canvas, const EllipsePredicti
 }
 
 EllipseFeature CorrelationTracker::track(Canvas& canvas) {
-  if (!state_->tracking_) return lost(FeatureStatus::not_found, 0.0);
+  if (!state_->tracking_) return lost_ellipse(FeatureStatus::not_found, 0.0);
   EllipseShape predicted = state_->shape_;
   predicted.centre += state_->motion_;
   const double reach = state_->parameters_.search_margin_px;

@@ -1,5 +1,7 @@
 #include "disc_template.hpp"
 
+#include "pixel.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +13,6 @@
 namespace vigia::tracking {
 namespace {
 
-constexpr double kQuantisationVariance = 1.0 / 12.0;
 constexpr double kReach = 4.5;  // blurs beyond which the model is flat
 
 /// The blurred disc at one point and how it moves with centre and Σ.

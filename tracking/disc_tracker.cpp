@@ -1,6 +1,8 @@
 #include "vigia/tracking/disc_tracker.hpp"
 
 #include "disc_finder.hpp"
+#include "lost_feature.hpp"
+#include "pixel.hpp"
 #include "seeded_dot.hpp"
 
 #include <algorithm>
@@ -11,6 +13,7 @@
 #include <Eigen/LU>
 
 #include "vigia/core/angle.hpp"
+#include "vigia/core/plane_geometry.hpp"
 
 namespace vigia::tracking {
 namespace {
@@ -18,14 +21,9 @@ namespace {
 using imaging::Canvas;
 using imaging::Window;
 
-constexpr double kStartBlur = 0.8;  // px
 constexpr int kWidenings = 4;
 constexpr double kEdgeBand = 3.0;  // px round an outline that its fit needs
 constexpr double kVisible = 1.5;   // contrast to noise at which something is there at all
-
-double size_of(const EllipseShape& shape) {
-  return std::sqrt(std::sqrt(shape.sigma.determinant()));
-}
 
 double log_size_ratio(const EllipseShape& a, const EllipseShape& b) {
   return std::log(size_of(a) / size_of(b));
@@ -42,12 +40,6 @@ bool cut_by_frame(const EllipseShape& shape, const Window& frame) {
   return shape.centre.x() - half.x() < 0.0 || shape.centre.y() - half.y() < 0.0 ||
          shape.centre.x() + half.x() > frame.width - 1 ||
          shape.centre.y() + half.y() > frame.height - 1;
-}
-
-EllipseFeature lost(FeatureStatus status) {
-  EllipseFeature feature;
-  feature.status = status;
-  return feature;
 }
 
 }  // namespace
@@ -119,7 +111,7 @@ EllipseFeature DiscTracker::State::search(Canvas& canvas, const Gate& gate, doub
   const double ratio = std::clamp(0.6 * expected.b / expected.a, 0.1, parameters_.min_axis_ratio);
   for (int attempt = 0;; ++attempt, margin *= 2.0) {
     const Window window = intersect(window_round(gate.shape, margin), frame);
-    if (window.empty()) return lost(FeatureStatus::not_found);
+    if (window.empty()) return lost_ellipse(FeatureStatus::not_found);
     canvas.require(window);
     const std::vector<DiscCandidate> candidates =
         finder_.find(canvas.image(), window, parameters_.polarity, ratio);
@@ -141,7 +133,7 @@ EllipseFeature DiscTracker::State::search(Canvas& canvas, const Gate& gate, doub
     }
     const bool everything = contains(window, frame);
     if (!unfinished || everything || attempt == kWidenings)
-      return lost(blame(candidates, gate, canvas.image(), window, frame));
+      return lost_ellipse(blame(candidates, gate, canvas.image(), window, frame));
   }
 }
 
@@ -223,13 +215,13 @@ std::optional<EllipseShape> DiscTracker::State::follow_dot(const vpImage<unsigne
 }
 
 EllipseFeature DiscTracker::State::track(Canvas& canvas) {
-  if (!tracking_) return lost(FeatureStatus::not_found);
+  if (!tracking_) return lost_ellipse(FeatureStatus::not_found);
   EllipseShape predicted = shape_;
   predicted.centre += motion_;
   const Window frame = canvas.frame().full();
   const double margin = margin_of(predicted);
   const Window window = intersect(window_round(predicted, margin), frame);
-  if (window.empty()) return lost(FeatureStatus::not_found);
+  if (window.empty()) return lost_ellipse(FeatureStatus::not_found);
   canvas.require(window);
 
   if (const auto dot = follow_dot(canvas.image(), predicted, window)) {
@@ -279,7 +271,7 @@ void DiscTracker::State::start(Canvas& canvas, const Ellipse& ellipse) {
   double outside = 0.0;
   for (int k = 0; k < kSamples; ++k) {
     const double angle = 2.0 * kPi * k / kSamples;
-    const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
+    const Eigen::Vector2d direction = unit_vector(angle);
     inside += level(shape_.centre + 0.25 * half.minCoeff() * direction) / kSamples;
     const double rim = 1.0 / std::sqrt(direction.dot(shape_.sigma.inverse() * direction));
     outside += level(shape_.centre + (rim + 4.0) * direction) / kSamples;

@@ -1,5 +1,7 @@
 #include "edge_fit.hpp"
 
+#include "pixel.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,10 +13,8 @@
 namespace vigia::tracking {
 namespace {
 
-constexpr double kMinBlur = 0.29;  // px: the pixel's own integration, 1/√12
 constexpr double kMaxBlur = 6.0;
 constexpr double kMinAxis = 1.5;  // px
-constexpr double kQuantisationVariance = 1.0 / 12.0;
 
 // Φ and φ of the normal distribution, tabulated; linear in between (error below 1e-5).
 class NormalTable {
@@ -222,7 +222,7 @@ bool EdgeFitter::step() {
   const double contrast = profile_.ground - profile_.disc + delta[6];
   profile_.ground += delta[5];
   profile_.disc = profile_.ground - contrast;
-  profile_.blur = std::clamp(profile_.blur + std::clamp(delta[7], -0.5, 0.5), kMinBlur, kMaxBlur);
+  profile_.blur = std::clamp(profile_.blur + std::clamp(delta[7], -0.5, 0.5), kPixelBlur, kMaxBlur);
   return is_ellipse(shape_);
 }
 
@@ -346,7 +346,7 @@ EdgeFit EdgeFitter::fit(const vpImage<unsigned char>& image, const imaging::Wind
   if (!is_ellipse(start)) return result;
   shape_ = start;
   profile_ = profile;
-  profile_.blur = std::clamp(profile.blur, kMinBlur, kMaxBlur);
+  profile_.blur = std::clamp(profile.blur, kPixelBlur, kMaxBlur);
   collect(image, bounds);
   if (count_ < 4 * kUnknowns) return result;
   evaluate();

@@ -37,6 +37,10 @@ Ellipse ellipse_of(const EllipseShape& shape) {
           std::sqrt(std::max(0.0, mean - radius)), psi};
 }
 
+double size_of(const EllipseShape& shape) {
+  return std::sqrt(std::sqrt(shape.sigma.determinant()));
+}
+
 Eigen::Vector2d half_extent(const EllipseShape& shape) {
   return {std::sqrt(shape.sigma(0, 0)), std::sqrt(shape.sigma(1, 1))};
 }

@@ -17,6 +17,9 @@ struct EllipseShape {
 EllipseShape shape_of(const Ellipse& ellipse);
 Ellipse ellipse_of(const EllipseShape& shape);
 
+/// √(ab), px.
+double size_of(const EllipseShape& shape);
+
 /// Half width and half height of the upright rectangle round the ellipse.
 Eigen::Vector2d half_extent(const EllipseShape& shape);
 

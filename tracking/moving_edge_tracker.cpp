@@ -1,6 +1,7 @@
 #include "vigia/tracking/moving_edge_tracker.hpp"
 
 #include "disc_finder.hpp"
+#include "lost_feature.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -40,12 +41,6 @@ struct EdgeMeasurement {
   double held = 0.0;     ///< share of the sites that hold on
   unsigned sites = 0;
 };
-
-EllipseFeature lost(FeatureStatus status) {
-  EllipseFeature feature;
-  feature.status = status;
-  return feature;
-}
 
 // Rms of the first-order distances of the sites that are in use.
 double scatter_of(EdgeSites& sites, const EllipseShape& shape) {
@@ -210,7 +205,7 @@ EllipseFeature MovingEdgeTracker::State::follow(Canvas& canvas, const EllipseSha
   const double margin = 2.0 * parameters_.range_px + parameters_.mask_size + 4.0;
   const Window window = intersect(window_round(start, margin), frame);
   if (window.empty() || window.width < 8 || window.height < 8)
-    return lost(FeatureStatus::not_found);
+    return lost_ellipse(FeatureStatus::not_found);
   canvas.require(window);
   // vpMeEllipse reads where it likes: it gets a copy of the window and nothing else.
   crop_.resize(static_cast<unsigned>(window.height), static_cast<unsigned>(window.width));
@@ -221,22 +216,22 @@ EllipseFeature MovingEdgeTracker::State::follow(Canvas& canvas, const EllipseSha
   EllipseShape local = start;
   local.centre -= origin;
   auto measured = measure(crop_, local);
-  if (!measured) return lost(FeatureStatus::not_found);
+  if (!measured) return lost_ellipse(FeatureStatus::not_found);
   const double contrast = contrast_of(crop_, measured->ellipse);
   measured->ellipse.u += origin.x();
   measured->ellipse.v += origin.y();
 
   const EllipseShape shape = shape_of(measured->ellipse);
   const double visible = visible_share(measured->ellipse, frame);
-  if (visible < parameters_.min_visible) return lost(FeatureStatus::cut_by_border);
+  if (visible < parameters_.min_visible) return lost_ellipse(FeatureStatus::cut_by_border);
   measured->held = std::min(1.0, measured->held / visible);
   const double growth = 0.25 * std::log(shape.sigma.determinant() / expected.sigma.determinant());
   if (std::abs(growth) > parameters_.max_scale_step ||
       (shape.centre - expected.centre).norm() > 2.0 * parameters_.range_px)
-    return lost(FeatureStatus::wrong_object);
+    return lost_ellipse(FeatureStatus::wrong_object);
   if (std::abs(contrast) < parameters_.finder.min_contrast)
-    return lost(FeatureStatus::low_contrast);
-  if (measured->held < parameters_.min_good_sites) return lost(FeatureStatus::occluded);
+    return lost_ellipse(FeatureStatus::low_contrast);
+  if (measured->held < parameters_.min_good_sites) return lost_ellipse(FeatureStatus::occluded);
   tracking_ = true;
   shape_ = shape;
   motion_.setZero();
@@ -255,7 +250,7 @@ EllipseFeature MovingEdgeTracker::acquire(Canvas& canvas, const EllipsePredictio
 }
 
 EllipseFeature MovingEdgeTracker::track(Canvas& canvas) {
-  if (!state_->tracking_) return lost(FeatureStatus::not_found);
+  if (!state_->tracking_) return lost_ellipse(FeatureStatus::not_found);
   EllipseShape predicted = state_->shape_;
   predicted.centre += state_->motion_;
   return state_->follow(canvas, predicted, predicted);

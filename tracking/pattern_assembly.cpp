@@ -33,10 +33,6 @@ bool may_be_dot(const Blob& blob) {
   return !blob.cut && blob.fill > kMinFill && blob.fill < kMaxFill;
 }
 
-double size_of(const EllipseShape& shape) {
-  return std::sqrt(std::sqrt(shape.sigma.determinant()));
-}
-
 /// Maps image offsets to metres of the plane, up to a turn: Σ^(−1/2) times the dot's radius.
 Eigen::Matrix2d unstretch(const EllipseShape& dot, double radius) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(dot.sigma);

@@ -1,5 +1,7 @@
 #include "pattern_eye.hpp"
 
+#include "pixel.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +13,6 @@ namespace {
 using imaging::Frame;
 using imaging::Window;
 
-constexpr double kStartBlur = 0.8;      // px
 constexpr double kSmallDot = 2.0;       // px, least semi-minor axis of a blob
 constexpr double kFlattest = 0.25;      // b/a of a dot
 constexpr int kRowStep = 3;             // rows from one that the blob finder scans to the next
@@ -45,10 +46,6 @@ BlobFinderParameters finder_parameters(double min_contrast) {
   parameters.min_contrast = min_contrast;
   parameters.row_step = kRowStep;
   return parameters;
-}
-
-double size_of(const EllipseShape& shape) {
-  return std::sqrt(std::sqrt(shape.sigma.determinant()));
 }
 
 bool cut_by(const Window& frame, const EllipseShape& shape) {

@@ -1,5 +1,6 @@
 #include "vigia/tracking/pattern_tracker.hpp"
 
+#include "lost_feature.hpp"
 #include "pattern_eye.hpp"
 #include "point_window.hpp"
 
@@ -29,7 +30,7 @@ class PatternTracker::State {
   }
 
   PointsFeature track(const Frame& frame) {
-    if (!sight_) return lost(FeatureStatus::not_found);
+    if (!sight_) return lost_points(FeatureStatus::not_found);
     if (auto sight = eye_.follow(frame, *sight_, motion_)) {
       keep(*sight);
       return sight->feature;
@@ -77,7 +78,7 @@ class PatternTracker::State {
   PointsFeature search(const Frame& frame, const std::vector<LabelledPoint>& points,
                        double margin) {
     const Window window = window_of(points, margin, frame.full());
-    if (window.empty()) return lost(FeatureStatus::not_found);
+    if (window.empty()) return lost_points(FeatureStatus::not_found);
     const std::vector<PatternSight> sights = eye_.find(frame, window);
     for (const PatternSight& sight : sights)
       if (sight.feature.status == FeatureStatus::found && is_wanted(sight.feature)) {
@@ -94,9 +95,9 @@ class PatternTracker::State {
       least = distance;
     }
     if (nearest == nullptr)
-      return lost(reaches_over(points, frame.full()) ? FeatureStatus::cut_by_border
-                  : eye_.dots_near(points)           ? FeatureStatus::occluded
-                                                     : FeatureStatus::not_found);
+      return lost_points(reaches_over(points, frame.full()) ? FeatureStatus::cut_by_border
+                         : eye_.dots_near(points)           ? FeatureStatus::occluded
+                                                            : FeatureStatus::not_found);
     PointsFeature feature = nearest->feature;
     if (feature.status == FeatureStatus::found) feature.status = FeatureStatus::wrong_object;
     return feature;

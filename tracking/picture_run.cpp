@@ -1,11 +1,10 @@
 #include "vigia/tracking/picture_run.hpp"
 
 #include "csv_text.hpp"
+#include "overlay_pen.hpp"
 
 #include <algorithm>
 #include <cmath>
-
-#include <opencv2/imgproc.hpp>
 
 #include "vigia/core/angle.hpp"
 #include "vigia/core/error.hpp"
@@ -14,16 +13,6 @@
 #include "vigia/tracking/moving_edge_tracker.hpp"
 
 namespace vigia::tracking {
-namespace {
-
-// A light line on a wider dark one.
-struct Pen {
-  cv::Scalar colour;
-  int width;
-};
-
-}  // namespace
-
 std::unique_ptr<EllipseTracker> make_picture_tracker(const std::string& name) {
   DiscTrackerParameters disc;
   disc.polarity = Polarity::either;
@@ -116,37 +105,17 @@ std::string picture_csv_line(const PictureRow& row) {
 }
 
 void draw_overlay(const PictureResult& result, vpImage<vpRGBa>& picture) {
-  cv::Mat canvas(static_cast<int>(picture.getHeight()), static_cast<int>(picture.getWidth()),
-                 CV_8UC4, picture.bitmap);
-  constexpr int kShift = 4;  // OpenCV's sub-pixel drawing, sixteenths
-  const auto fine = [](double value) { return static_cast<int>(std::lround(value * 16.0)); };
-  // vpRGBa is R, G, B, A in memory.
-  const Pen dark{cv::Scalar(20, 20, 60, 255), 3};
-  const Pen light{cv::Scalar(255, 210, 0, 255), 1};
-  for (const Pen& pen : {dark, light})
+  draw_twice(picture, [&](const OverlayPen& pen) {
     for (const PictureRow& row : result.rows) {
       if (row.feature.status != FeatureStatus::found) continue;
       const Ellipse& e = row.feature.ellipse;
-      cv::ellipse(canvas, cv::Point(fine(e.u), fine(e.v)), cv::Size(fine(e.a), fine(e.b)),
-                  to_deg(e.psi), 0.0, 360.0, pen.colour, pen.width, cv::LINE_AA, kShift);
-      const double arm = std::clamp(0.3 * e.b, 2.0, 8.0);
-      cv::line(canvas, cv::Point(fine(e.u - arm), fine(e.v)), cv::Point(fine(e.u + arm), fine(e.v)),
-               pen.colour, pen.width, cv::LINE_AA, kShift);
-      cv::line(canvas, cv::Point(fine(e.u), fine(e.v - arm)), cv::Point(fine(e.u), fine(e.v + arm)),
-               pen.colour, pen.width, cv::LINE_AA, kShift);
-      const std::string text = std::to_string(row.target);
-      const double scale = 0.4;
-      int below = 0;
-      const cv::Size size =
-          cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, scale, pen.width, &below);
-      const int u = static_cast<int>(e.u + 0.71 * e.a) + 3;
-      const int v = static_cast<int>(e.v - 0.71 * e.a) - 1;
-      const cv::Point place(
-          std::clamp(u, 1, std::max(1, canvas.cols - size.width - 2)),
-          std::clamp(v, size.height + 2, std::max(size.height + 2, canvas.rows - 3)));
-      cv::putText(canvas, text, place, cv::FONT_HERSHEY_SIMPLEX, scale, pen.colour, pen.width,
-                  cv::LINE_AA);
+      pen.ellipse(e);
+      pen.cross({e.u, e.v}, std::clamp(0.3 * e.b, 2.0, 8.0));
+      pen.text_within(
+          std::to_string(row.target),
+          {static_cast<int>(e.u + 0.71 * e.a) + 3, static_cast<int>(e.v - 0.71 * e.a) - 1}, 0.4);
     }
+  });
 }
 
 }  // namespace vigia::tracking

@@ -1,66 +1,41 @@
 #include "vigia/tracking/point_picture_run.hpp"
 
 #include "csv_text.hpp"
+#include "overlay_pen.hpp"
 
 #include <algorithm>
 #include <cmath>
-
-#include <opencv2/imgproc.hpp>
+#include <limits>
 
 #include "vigia/core/error.hpp"
 
 namespace vigia::tracking {
 namespace {
 
-constexpr int kShift = 4;  // OpenCV's sub-pixel drawing, sixteenths
 constexpr int kTagCorners = 4;
 
-/// A light line on a wider dark one.
-struct Pen {
-  cv::Scalar colour;
-  int width;
-};
-
-cv::Point fine(const Eigen::Vector2d& uv) {
-  const auto sixteenths = [](double value) { return static_cast<int>(std::lround(16.0 * value)); };
-  return {sixteenths(uv.x()), sixteenths(uv.y())};
-}
-
-void draw_points(const PointsFeature& feature, const Pen& pen, cv::Mat& canvas) {
+void draw_points(const PointsFeature& feature, const OverlayPen& pen) {
   const auto& points = feature.points;
   const bool tag = std::holds_alternative<int>(*feature.code);
   for (std::size_t i = 0; tag && points.size() == kTagCorners && i < points.size(); ++i)
-    cv::line(canvas, fine(points[i].uv), fine(points[(i + 1) % points.size()].uv), pen.colour,
-             pen.width, cv::LINE_AA, kShift);
+    pen.line(points[i].uv, points[(i + 1) % points.size()].uv);
   for (const LabelledPoint& point : points) {
-    const Eigen::Vector2d across(4.0, 0.0);
-    const Eigen::Vector2d down(0.0, 4.0);
-    for (const Eigen::Vector2d& arm : {across, down})
-      cv::line(canvas, fine(point.uv - arm), fine(point.uv + arm), pen.colour, pen.width,
-               cv::LINE_AA, kShift);
-    cv::putText(canvas, std::to_string(point.label),
-                cv::Point(static_cast<int>(point.uv.x()) + 5, static_cast<int>(point.uv.y()) - 4),
-                cv::FONT_HERSHEY_SIMPLEX, 0.35, pen.colour, pen.width, cv::LINE_AA);
+    pen.cross(point.uv, 4.0);
+    pen.text(std::to_string(point.label),
+             {static_cast<int>(point.uv.x()) + 5, static_cast<int>(point.uv.y()) - 4}, 0.35);
   }
 }
 
 /// The code, beside the landmark and within the picture.
-void draw_code(const PointPictureRow& row, const Pen& pen, cv::Mat& canvas) {
+void draw_code(const PointPictureRow& row, const OverlayPen& pen) {
   double right = 0.0;
-  double top = canvas.rows;
+  double top = std::numeric_limits<double>::infinity();
   for (const LabelledPoint& point : row.feature.points) {
     right = std::max(right, point.uv.x());
     top = std::min(top, point.uv.y());
   }
-  const std::string text = to_string(*row.feature.code) + " (" + std::to_string(row.target) + ')';
-  int below = 0;
-  const cv::Size size = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, 0.5, pen.width, &below);
-  const cv::Point place(
-      std::clamp(static_cast<int>(right) + 8, 1, std::max(1, canvas.cols - size.width - 2)),
-      std::clamp(static_cast<int>(top) - 6, size.height + 2,
-                 std::max(size.height + 2, canvas.rows - 3)));
-  cv::putText(canvas, text, place, cv::FONT_HERSHEY_SIMPLEX, 0.5, pen.colour, pen.width,
-              cv::LINE_AA);
+  pen.text_within(to_string(*row.feature.code) + " (" + std::to_string(row.target) + ')',
+                  {static_cast<int>(right) + 8, static_cast<int>(top) - 6}, 0.5);
 }
 
 }  // namespace
@@ -136,17 +111,13 @@ std::string point_csv_lines(const PointPictureResult& result) {
 }
 
 void draw_overlay(const PointPictureResult& result, vpImage<vpRGBa>& picture) {
-  cv::Mat canvas(static_cast<int>(picture.getHeight()), static_cast<int>(picture.getWidth()),
-                 CV_8UC4, picture.bitmap);
-  // vpRGBa is R, G, B, A in memory.
-  const Pen dark{cv::Scalar(20, 20, 60, 255), 3};
-  const Pen light{cv::Scalar(255, 210, 0, 255), 1};
-  for (const Pen& pen : {dark, light})
+  draw_twice(picture, [&](const OverlayPen& pen) {
     for (const PointPictureRow& row : result.rows) {
       if (!row.feature.code || row.feature.points.empty()) continue;
-      draw_points(row.feature, pen, canvas);
-      draw_code(row, pen, canvas);
+      draw_points(row.feature, pen);
+      draw_code(row, pen);
     }
+  });
 }
 
 }  // namespace vigia::tracking

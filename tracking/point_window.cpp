@@ -38,12 +38,6 @@ double extent_of(const std::vector<LabelledPoint>& points) {
   return extent;
 }
 
-PointsFeature lost(FeatureStatus status) {
-  PointsFeature feature;
-  feature.status = status;
-  return feature;
-}
-
 bool reaches_over(const std::vector<LabelledPoint>& points, const Window& frame) {
   return std::any_of(points.begin(), points.end(), [&](const LabelledPoint& point) {
     return point.uv.x() < 0.0 || point.uv.y() < 0.0 || point.uv.x() > frame.width - 1 ||

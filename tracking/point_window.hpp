@@ -15,7 +15,6 @@ Eigen::Vector2d middle_of(const std::vector<LabelledPoint>& points);
 /// The largest distance of a point from the middle.
 double extent_of(const std::vector<LabelledPoint>& points);
 bool reaches_over(const std::vector<LabelledPoint>& points, const imaging::Window& frame);
-PointsFeature lost(FeatureStatus status);
 
 /// How far from its points a predicted landmark's outline may be seen, px.
 double reach_of(const PointsPrediction& prediction);

@@ -1,5 +1,7 @@
 #include "side_fit.hpp"
 
+#include "pixel.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -12,17 +14,14 @@
 namespace vigia::tracking {
 namespace {
 
-constexpr double kStartBlur = 0.8;
-constexpr double kMinBlur = 0.29;  // px: the pixel's own integration
-constexpr double kMaxBlur = 4.0;
+constexpr double kMaxSideBlur = 4.0;  // px
 constexpr double kBandBlurs = 3.0;
 constexpr double kEndBlurs = 2.5;
 constexpr int kPasses = 3;         // bands, each round the last result
 constexpr int kSteps = 3;          // of Gauss–Newton in one band
 constexpr double kShortest = 6.0;  // px
 constexpr double kLargestStep = 1.0;
-constexpr double kMinContrast = 15.0;
-constexpr double kQuantisationVariance = 1.0 / 12.0;
+constexpr double kMinStep = 15.0;  // grey levels
 
 struct Sample {
   double along;   ///< from the middle, px
@@ -70,7 +69,7 @@ void take(Edge& edge, const Vector& step) {
   edge.turn += step[1];
   edge.dark += step[2];
   edge.light += step[3];
-  edge.blur = std::clamp(edge.blur + step[4], kMinBlur, kMaxBlur);
+  edge.blur = std::clamp(edge.blur + step[4], kPixelBlur, kMaxSideBlur);
 }
 
 /// The pixels within @p half_width of the line and @p half_length of its middle.
@@ -166,7 +165,7 @@ std::optional<SideFit> fit_side(const vpImage<unsigned char>& image, const SideB
     line.contrast = edge.light - edge.dark;
     move(line, edge);
   }
-  if (!line.covariance.allFinite() || line.contrast < kMinContrast) return std::nullopt;
+  if (!line.covariance.allFinite() || line.contrast < kMinStep) return std::nullopt;
   return line;
 }
 

@@ -1,5 +1,6 @@
 #include "vigia/tracking/tag_tracker.hpp"
 
+#include "lost_feature.hpp"
 #include "point_window.hpp"
 #include "side_fit.hpp"
 #include "tag_detector.hpp"
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <optional>
 
+#include "vigia/core/plane_geometry.hpp"
 #include "vigia/imaging/tag_bitmap.hpp"
 
 namespace vigia::tracking {
@@ -42,7 +44,7 @@ std::optional<std::array<Corner, 4>> refit(const vpImage<unsigned char>& image,
     // Within the black border and the white rim, each at least one field wide.
     const Eigen::Vector2d across = tag.corners[(k + 3) % 4] - tag.corners[k];
     const Eigen::Vector2d along = (band.to - band.from).normalized();
-    const double depth = std::abs(along.x() * across.y() - along.y() * across.x());
+    const double depth = std::abs(cross(along, across));
     band.half_width = 0.8 * depth / imaging::kTagFields;
     sides[k] = fit_side(image, band);
     if (!sides[k]) return std::nullopt;
@@ -72,7 +74,7 @@ class TagTracker::State {
   }
 
   PointsFeature track(const Frame& frame) {
-    if (last_.empty()) return lost(FeatureStatus::not_found);
+    if (last_.empty()) return lost_points(FeatureStatus::not_found);
     std::vector<LabelledPoint> predicted = last_;
     for (LabelledPoint& point : predicted) point.uv += motion_;
     return search(frame, predicted, motion_.norm());
@@ -131,8 +133,8 @@ class TagTracker::State {
         return feature;
       }
     if (features.empty())
-      return lost(reaches_over(points, frame.full()) ? FeatureStatus::cut_by_border
-                                                     : FeatureStatus::not_found);
+      return lost_points(reaches_over(points, frame.full()) ? FeatureStatus::cut_by_border
+                                                            : FeatureStatus::not_found);
     PointsFeature other = features.front();
     if (other.status == FeatureStatus::found) other.status = FeatureStatus::wrong_object;
     return other;

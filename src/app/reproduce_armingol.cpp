@@ -47,7 +47,7 @@ Estimate mean_of(const std::vector<DriveScore>& scores, const std::string& local
 }
 
 /// A quantity of a localizer, in a unit of @p factor.
-struct Quantity {
+struct DriveQuantity {
   std::string name;
   std::string localizer;
   std::string unit;
@@ -56,7 +56,7 @@ struct Quantity {
   Part bound;
 };
 
-PaperRow row_of(const Drives& drives, const Quantity& q, std::optional<double> published) {
+PaperRow row_of(const Drives& drives, const DriveQuantity& q, std::optional<double> published) {
   const auto scaled = [&](const evaluation::Interval& interval) {
     return evaluation::Interval{q.factor * interval.low, q.factor * interval.high};
   };

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "vigia/core/angle.hpp"
+#include "vigia/core/plane_geometry.hpp"
 #include "vigia/evaluation/quixote_setting.hpp"
 #include "vigia/evaluation/rendered_views.hpp"
 #include "vigia/report/curve_chart.hpp"
@@ -30,7 +31,7 @@ constexpr std::uint64_t kSeed = 1;
 constexpr std::array<double, 3> kNoise_px{0.1, 0.5, 1.0};
 
 /// A column of the paper's Table 1 (absolute errors), and the scale of its percentages.
-struct Quantity {
+struct TableQuantity {
   const char* name;
   const char* unit;
   double factor;  ///< from rad or m to the unit
@@ -39,13 +40,13 @@ struct Quantity {
   double full_scale;  ///< in the unit
 };
 
-constexpr std::array<Quantity, kViewQuantities> kTable1{
-    Quantity{"φ", "°", 180.0 / kPi, 0.44, 2.10, 90.0},
-    Quantity{"θ", "°", 180.0 / kPi, 0.83, 3.74, 90.0},
-    Quantity{"D", "cm", 100.0, 2.89, 11.30, 800.0},
-    Quantity{"x", "cm", 100.0, 3.01, 7.90, 600.0},
-    Quantity{"y", "cm", 100.0, 2.95, 11.79, 600.0},
-    Quantity{"z", "cm", 100.0, 3.09, 8.16, 250.0}};
+constexpr std::array<TableQuantity, kViewQuantities> kTable1{
+    TableQuantity{"φ", "°", 180.0 / kPi, 0.44, 2.10, 90.0},
+    TableQuantity{"θ", "°", 180.0 / kPi, 0.83, 3.74, 90.0},
+    TableQuantity{"D", "cm", 100.0, 2.89, 11.30, 800.0},
+    TableQuantity{"x", "cm", 100.0, 3.01, 7.90, 600.0},
+    TableQuantity{"y", "cm", 100.0, 2.95, 11.79, 600.0},
+    TableQuantity{"z", "cm", 100.0, 3.09, 8.16, 250.0}};
 
 /// Every method on the same views.
 struct Judged {
@@ -70,7 +71,7 @@ Judged judge(const std::vector<PatternView>& views, std::string where) {
 
 void add_rows(const Judged& judged, evaluation::PaperTable& table) {
   for (std::size_t i = 0; i < kViewQuantities; ++i) {
-    const Quantity& q = kTable1[i];
+    const TableQuantity& q = kTable1[i];
     const auto name = [&](const char* what) {
       return fmt::format("{}: {} {}", judged.where, q.name, what);
     };
@@ -155,7 +156,7 @@ Price price_at(const QuixoteSetting& setting, const std::vector<PatternView>& vi
   std::vector<PatternView> off;
   for (const PatternView& view : views) {
     const double turn = random.uniform(0.0, 2.0 * kPi);
-    const Eigen::Vector2d by = off_px * Eigen::Vector2d(std::cos(turn), std::sin(turn));
+    const Eigen::Vector2d by = off_px * unit_vector(turn);
     off.push_back(quixote_view(wide, view.landmark, view.wMc.translation(), by, 0.1, random));
   }
   return {off_px, mean_position_cm(off, ViewMethod::as_published),
@@ -215,7 +216,7 @@ void draw_route(const QuixoteSetting& setting, const std::vector<PatternView>& r
   report::Curve refined{"refined", {}, report::Curve::Look::marks};
   report::CurveChart errors{
       "Errors along the route, as published, 0.5 px", "view", "error, % of full scale", {}};
-  for (const Quantity& q : kTable1) errors.curves.push_back({q.name, {}});
+  for (const TableQuantity& q : kTable1) errors.curves.push_back({q.name, {}});
   for (std::size_t k = 0; k < route.size(); ++k) {
     const Eigen::Vector2d at = route[k].wMc.translation().head<2>();
     truth.points.push_back(at);

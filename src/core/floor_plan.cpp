@@ -1,11 +1,11 @@
 #include "vigia/core/floor_plan.hpp"
 
-#include "plane_geometry.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+
+#include "vigia/core/plane_geometry.hpp"
 
 namespace vigia {
 namespace {

@@ -1,4 +1,4 @@
-#include "plane_geometry.hpp"
+#include "vigia/core/plane_geometry.hpp"
 
 #include <algorithm>
 #include <cmath>

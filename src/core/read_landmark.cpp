@@ -9,7 +9,6 @@
 namespace vigia {
 namespace {
 
-constexpr Range kCoordinate{-1000.0, 1000.0};
 const std::vector<std::string> kKinds{"disc", "pattern", "tag"};
 
 int read_below(MapReader& reader, const std::string& key, int count) {

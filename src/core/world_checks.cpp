@@ -1,12 +1,11 @@
 #include "world_checks.hpp"
 
-#include "plane_geometry.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "vigia/core/angle.hpp"
+#include "vigia/core/plane_geometry.hpp"
 
 namespace vigia {
 namespace {

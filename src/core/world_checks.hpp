@@ -9,7 +9,8 @@
 
 namespace vigia {
 
-inline constexpr double kShortestWall = 1e-3;   // metres
+inline constexpr Range kCoordinate{-1000.0, 1000.0};  // metres
+inline constexpr double kShortestWall = 1e-3;         // metres
 inline constexpr double kMountedWithin = 0.02;  // metres between a mounted landmark and its face
 
 /// A landmark as the file gives it, with what its checks need.

@@ -6,7 +6,6 @@
 namespace vigia {
 namespace {
 
-constexpr Range kCoordinate{-1000.0, 1000.0};
 constexpr Range kHeight{0.05, 100.0};
 
 std::vector<Eigen::Vector2d> rectangle(double width, double depth) {

@@ -11,18 +11,6 @@
 namespace vigia::evaluation {
 namespace {
 
-/// One localizer's sums over a drive.
-struct LocalizerSums {
-  explicit LocalizerSums(PosteriorBound b) : bound(std::move(b)) {}
-
-  PosteriorBound bound;
-  double squared_position = 0.0;
-  double squared_heading = 0.0;
-  double nees = 0.0;
-  double bound_trace = 0.0;
-  LocalizerScore score;
-};
-
 int& count_of(LocalizerScore& score, localization::UpdateStatus status) {
   switch (status) {
     case localization::UpdateStatus::fused:
@@ -49,6 +37,18 @@ void bound_by(const Observation& observation, const Landmark& landmark,
 }  // namespace
 
 struct DriveScorer::Impl {
+  /// One localizer's sums over a drive.
+  struct LocalizerSums {
+    explicit LocalizerSums(PosteriorBound b) : bound(std::move(b)) {}
+
+    PosteriorBound bound;
+    double squared_position = 0.0;
+    double squared_heading = 0.0;
+    double nees = 0.0;
+    double bound_trace = 0.0;
+    LocalizerScore score;
+  };
+
   const mission::MissionSetup* setup = nullptr;
   DriveScore score;
   std::vector<LocalizerSums> sums;
@@ -175,7 +175,7 @@ void DriveScorer::on_finish(mission::Outcome outcome, Stamp end) {
     impl.score.perception.centring_rms_px = std::sqrt(impl.squared_centring / impl.centred);
   const double n = std::max(1, impl.ticks);
   for (std::size_t i = 0; i < impl.sums.size(); ++i) {
-    LocalizerSums& sum = impl.sums[i];
+    Impl::LocalizerSums& sum = impl.sums[i];
     sum.score.position_rmse_m = std::sqrt(sum.squared_position / n);
     sum.score.heading_rmse_rad = std::sqrt(sum.squared_heading / n);
     sum.score.nees_mean = sum.nees / n;

@@ -1,6 +1,7 @@
 #include "vigia/localization/disc_model.hpp"
 
 #include "camera_twists.hpp"
+#include "space_geometry.hpp"
 
 #include <cmath>
 
@@ -9,9 +10,6 @@
 
 namespace vigia::localization {
 namespace {
-
-/// Below this cosine between the disc's normal and the line of sight the disc is edge on.
-constexpr double kEdgeOn = 1e-3;
 
 /// A disc in the camera frame.
 struct Disc {

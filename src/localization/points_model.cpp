@@ -1,6 +1,7 @@
 #include "vigia/localization/points_model.hpp"
 
 #include "camera_twists.hpp"
+#include "space_geometry.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,17 +12,9 @@
 namespace vigia::localization {
 namespace {
 
-/// Below this cosine between normal and line of sight a landmark is edge on.
 /// Share of the greatest information below which a direction of the state is not measured. Rounding
 /// leaves about as much, and some weak direction that points do measure is below 1e-11.
 constexpr double kNothing = 1e-13;
-constexpr double kEdgeOn = 1e-3;
-
-Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return m;
-}
 
 Eigen::Matrix3d exp_so3(const Eigen::Vector3d& w) {
   const double angle = w.norm();

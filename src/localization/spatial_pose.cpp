@@ -1,5 +1,7 @@
 #include "vigia/localization/spatial_pose.hpp"
 
+#include "space_geometry.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,12 +11,6 @@ namespace vigia::localization {
 namespace {
 
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
-
-Eigen::Matrix3d skew(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0.0, -v.z(), v.y(), v.z(), 0.0, -v.x(), -v.y(), v.x(), 0.0;
-  return m;
-}
 
 /// ∂θ/∂δφ of θ = atan2(f_y, f_x), f the robot's front in world axes.
 Eigen::RowVector3d heading_by_turn(const Eigen::Vector3d& f) {

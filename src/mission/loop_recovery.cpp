@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "vigia/core/plane_geometry.hpp"
 #include "vigia/localization/pattern_fix.hpp"
 
 namespace vigia::mission {
@@ -133,8 +134,7 @@ void Loop::begin_stroll() {
   if (!way) return;
   const Eigen::Vector2d from = belief().pose.position();
   const double heading = belief().pose.theta + way->bearing;
-  const Eigen::Vector2d to =
-      from + way->range_m * Eigen::Vector2d(std::cos(heading), std::sin(heading));
+  const Eigen::Vector2d to = from + way->range_m * unit_vector(heading);
   stroll_.emplace(Path({from, to}), setup_.world.plan, setup_.robot.robot.radius_m,
                   setup_.robot.robot.base, setup_.pilot);
   stroll_end_ = now_ + Duration::from_seconds(kStroll_s);

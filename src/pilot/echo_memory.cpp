@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "vigia/core/angle.hpp"
+#include "vigia/core/plane_geometry.hpp"
 
 namespace vigia::pilot {
 namespace {
@@ -78,8 +79,7 @@ void EchoMemory::take(const RangeScan& scan, const std::vector<char>& unexplaine
   for (std::size_t i = 0; i < scan.readings.size(); ++i) {
     const RangeReading& reading = scan.readings[i];
     if (unexplained[i] == 0) continue;
-    note(reading.range_m * Vector2d(std::cos(reading.bearing), std::sin(reading.bearing)),
-         scan.stamp);
+    note(reading.range_m * unit_vector(reading.bearing), scan.stamp);
   }
   see_through(scan);
 }

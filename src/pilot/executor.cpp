@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "vigia/core/odometry.hpp"
+#include "vigia/core/plane_geometry.hpp"
 #include "vigia/pilot/pursuit.hpp"
 
 namespace vigia::pilot {
@@ -17,7 +18,7 @@ constexpr double kBeside = 0.025;  // m that must stay free beside the robot
 Eigen::Vector2d along(double curvature, double distance) {
   const double half = 0.5 * curvature * distance;
   const double chord = std::abs(half) < 1e-6 ? distance : distance * std::sin(half) / half;
-  return chord * Eigen::Vector2d(std::cos(half), std::sin(half));
+  return chord * unit_vector(half);
 }
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "vigia/core/plane_geometry.hpp"
+
 namespace vigia::pilot {
 namespace {
 
@@ -16,13 +18,6 @@ constexpr double kOtherSide = 0.6;  // per metre on the side that was not chosen
 constexpr double kSoft = 0.30;      // m from a thing within which closeness costs
 constexpr double kCloseness = 0.4;  // per station, right beside a thing
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
-double distance_to_segment(const Vector2d& c, const Vector2d& p, const Vector2d& q) {
-  const Vector2d pq = q - p;
-  const double length2 = pq.squaredNorm();
-  const double t = length2 > 0.0 ? std::clamp((c - p).dot(pq) / length2, 0.0, 1.0) : 0.0;
-  return (p + t * pq - c).norm();
-}
 
 std::vector<double> stations_ahead(const Path& path, double station, double horizon) {
   std::vector<double> result;

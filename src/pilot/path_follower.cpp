@@ -4,10 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include "vigia/core/plane_geometry.hpp"
+
 namespace vigia::pilot {
 namespace {
 
-constexpr double kWindow = 0.5;          // m that the station may advance in one step
+constexpr double kStationWindow = 0.5;   // m that the station may advance in one step
 constexpr double kCornerReached = 0.02;  // m before a corner at which the turn begins
 
 std::vector<double> stops_of(const Path& path, double corner) {
@@ -16,7 +18,7 @@ std::vector<double> stops_of(const Path& path, double corner) {
   for (std::size_t i = 1; i + 1 < points.size(); ++i) {
     const Eigen::Vector2d in = points[i] - points[i - 1];
     const Eigen::Vector2d out = points[i + 1] - points[i];
-    const double bend = std::atan2(in.x() * out.y() - in.y() * out.x(), in.dot(out));
+    const double bend = std::atan2(cross(in, out), in.dot(out));
     if (std::abs(bend) > corner) stops.push_back(path.stations()[i]);
   }
   stops.push_back(path.length());
@@ -39,7 +41,7 @@ void PathFollower::skip_to(double station) {
 
 void PathFollower::advance(const Pose2& estimate) {
   const Eigen::Vector2d p = estimate.position();
-  station_ = path_.project(p, station_, std::min(station_ + kWindow, stops_[stretch_]));
+  station_ = path_.project(p, station_, std::min(station_ + kStationWindow, stops_[stretch_]));
   const bool last = stretch_ + 1 == stops_.size();
   if (!last && stops_[stretch_] - station_ <= kCornerReached) {
     station_ = stops_[stretch_];
@@ -61,7 +63,7 @@ Eigen::Vector2d PathFollower::pursued(const Pose2& estimate) const {
   // the path's end there is nothing left to follow but the end itself.
   if (beyond > 0.0 && !(last && station_ >= stop)) {
     const double heading = path_.heading(stop - 1e-6);
-    target += beyond * Eigen::Vector2d(std::cos(heading), std::sin(heading));
+    target += beyond * unit_vector(heading);
   }
   const Eigen::Vector2d d = target - estimate.position();
   const double c = std::cos(estimate.theta);

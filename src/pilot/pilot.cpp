@@ -11,14 +11,16 @@
 #include <limits>
 #include <utility>
 
+#include "vigia/core/plane_geometry.hpp"
+
 namespace vigia::pilot {
 namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kUnblocked = std::numeric_limits<double>::infinity();
 constexpr double kPathStep = 0.10;       // m between the places on the path that are tried
-constexpr double kWindow = 0.5;          // m that the station may advance in one step off the path
+constexpr double kBesideWindow = 0.5;    // m that the station may advance in one step off the path
 constexpr double kAhead = 0.35;          // m, of the point that is pursued on the way round
 constexpr double kProgress = 0.15;       // m along the path that count as progress
 constexpr double kSearchEvery = 0.2;     // s between two searches for a way round
@@ -40,7 +42,7 @@ Vector2d to_base(const Pose2& base, const Vector2d& p_w) {
 
 /// Where along the path something is in the way.
 struct Blockade {
-  double ahead_m = kInfinite;
+  double ahead_m = kUnblocked;
   std::optional<Vector2d> thing;
 };
 
@@ -139,8 +141,7 @@ void Pilot::Impl::look(const PilotInput& input) {
     const bool known = explained(reading, *plan, input.belief.pose, doubt,
                                  from_deg(params.ring.half_angle_deg), sigma);
     unexplained[i] = known ? 0 : 1;
-    hazards.push_back(
-        {reading.range_m * Vector2d(std::cos(reading.bearing), std::sin(reading.bearing)), known});
+    hazards.push_back({reading.range_m * unit_vector(reading.bearing), known});
   }
   memory.take(scan, unexplained);
 }
@@ -184,7 +185,8 @@ BaseRates Pilot::Impl::avoid(const Pose2& base) {
 void Pilot::Impl::keep_station(const Pose2& base, const Blockade& blockade) {
   const Path& path = follower.path();
   const double from = follower.station();
-  const double at = path.project(base.position(), from, std::min(from + kWindow, path.length()));
+  const double at =
+      path.project(base.position(), from, std::min(from + kBesideWindow, path.length()));
   follower.skip_to(at);
   const double off = (path.at(at) - base.position()).norm();
   if (off > params.avoidance.rejoin_m || std::isfinite(blockade.ahead_m)) return;

@@ -12,25 +12,26 @@
 namespace vigia::report {
 namespace {
 
-constexpr double kWidth = 1400.0;
-constexpr double kHeight = 900.0;
+constexpr double kArmsWidth = 1400.0;
+constexpr double kArmsHeight = 900.0;
 constexpr double kMark = 8.0;
 constexpr double kLogarithmicFrom = 8.0;
-const Box kFrame{110.0, 130.0, 1250.0, 670.0};
+const Box kArmsFrame{110.0, 130.0, 1250.0, 670.0};
 
-constexpr std::array<Colour, 6> kColours{palette::kBlue,   palette::kVermillion, palette::kGreen,
-                                         palette::kPurple, palette::kOrange,     palette::kBlack};
+constexpr std::array<Colour, 6> kArmsColours{palette::kBlue,   palette::kVermillion,
+                                             palette::kGreen,  palette::kPurple,
+                                             palette::kOrange, palette::kBlack};
 
-struct Scales {
+struct ArmScales {
   ChartAxis looks;
   ChartAxis rms;
   Eigen::Vector2d operator()(double looks_value, double rms_value) const {
-    return {kFrame.x + kFrame.width * looks.fraction(looks_value),
-            kFrame.bottom() - kFrame.height * rms.fraction(rms_value)};
+    return {kArmsFrame.x + kArmsFrame.width * looks.fraction(looks_value),
+            kArmsFrame.bottom() - kArmsFrame.height * rms.fraction(rms_value)};
   }
 };
 
-Scales scales_of(const std::vector<ArmPoint>& arms) {
+ArmScales arm_scales(const std::vector<ArmPoint>& arms) {
   const auto span = [&](const ArmValue ArmPoint::*value) {
     double low = (arms.front().*value).low;
     double high = (arms.front().*value).high;
@@ -68,26 +69,26 @@ void draw_mark(const Sheet& sheet, const Eigen::Vector2d& at, std::size_t group)
     for (const auto& p : kOutlines[shape - 1]) outline.push_back(at + kMark * p);
     sheet.polyline(outline, true);
   }
-  sheet.fill(kColours[group % kColours.size()]);
+  sheet.fill(kArmsColours[group % kArmsColours.size()]);
 }
 
-void draw_axes(const Sheet& sheet, const Scales& at) {
+void draw_axes(const Sheet& sheet, const ArmScales& at) {
   for (const double tick : at.looks.ticks()) {
-    const double x = kFrame.x + kFrame.width * at.looks.fraction(tick);
-    sheet.line({x, kFrame.y}, {x, kFrame.bottom()}, {palette::kGrid, 1.0});
-    sheet.text(at.looks.label(tick), {x, kFrame.bottom() + 20.0}, {16.0}, palette::kInk,
+    const double x = kArmsFrame.x + kArmsFrame.width * at.looks.fraction(tick);
+    sheet.line({x, kArmsFrame.y}, {x, kArmsFrame.bottom()}, {palette::kGrid, 1.0});
+    sheet.text(at.looks.label(tick), {x, kArmsFrame.bottom() + 20.0}, {16.0}, palette::kInk,
                {0.5, 0.5});
   }
   for (const double tick : at.rms.ticks()) {
-    const double y = kFrame.bottom() - kFrame.height * at.rms.fraction(tick);
-    sheet.line({kFrame.x, y}, {kFrame.right(), y}, {palette::kGrid, 1.0});
-    sheet.text(at.rms.label(tick), {kFrame.x - 10.0, y}, {16.0}, palette::kInk, {1.0, 0.5});
+    const double y = kArmsFrame.bottom() - kArmsFrame.height * at.rms.fraction(tick);
+    sheet.line({kArmsFrame.x, y}, {kArmsFrame.right(), y}, {palette::kGrid, 1.0});
+    sheet.text(at.rms.label(tick), {kArmsFrame.x - 10.0, y}, {16.0}, palette::kInk, {1.0, 0.5});
   }
-  sheet.rectangle(kFrame);
+  sheet.rectangle(kArmsFrame);
   sheet.stroke({palette::kMuted, 1.0});
-  sheet.text("looks per drive", {kFrame.x + 0.5 * kFrame.width, kFrame.bottom() + 56.0},
+  sheet.text("looks per drive", {kArmsFrame.x + 0.5 * kArmsFrame.width, kArmsFrame.bottom() + 56.0},
              {17.0, true}, palette::kInk, {0.5, 0.5});
-  sheet.upright_text("path RMS, cm", {kFrame.x - 76.0, kFrame.y + 0.5 * kFrame.height},
+  sheet.upright_text("path RMS, cm", {kArmsFrame.x - 76.0, kArmsFrame.y + 0.5 * kArmsFrame.height},
                      {17.0, true}, palette::kInk);
 }
 
@@ -102,25 +103,25 @@ void draw_interval(const Sheet& sheet, const Eigen::Vector2d& from, const Eigen:
 }
 
 void draw_legend(const Sheet& sheet, const std::vector<std::string>& groups) {
-  double x = kFrame.x + kMark;
+  double x = kArmsFrame.x + kMark;
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    draw_mark(sheet, {x, kFrame.y - 24.0}, g);
-    sheet.text(groups[g], {x + 18.0, kFrame.y - 24.0}, {16.0}, palette::kInk);
+    draw_mark(sheet, {x, kArmsFrame.y - 24.0}, g);
+    sheet.text(groups[g], {x + 18.0, kArmsFrame.y - 24.0}, {16.0}, palette::kInk);
     x += 18.0 + sheet.text_size(groups[g], {16.0}).x() + 34.0;
   }
   sheet.text("bars: 95 % intervals of the means; lower left is better",
-             {kFrame.right(), kFrame.y - 24.0}, {15.0}, palette::kMuted, {1.0, 0.5});
+             {kArmsFrame.right(), kArmsFrame.y - 24.0}, {15.0}, palette::kMuted, {1.0, 0.5});
 }
 
-void draw_points(const Sheet& sheet, const Scales& at, const std::vector<ArmPoint>& arms,
+void draw_points(const Sheet& sheet, const ArmScales& at, const std::vector<ArmPoint>& arms,
                  const std::vector<std::string>& groups) {
-  LabelPlacer labels(kFrame);
+  LabelPlacer labels(kArmsFrame);
   const auto group_of = [&](const ArmPoint& arm) {
     return static_cast<std::size_t>(std::find(groups.begin(), groups.end(), arm.group) -
                                     groups.begin());
   };
   for (const ArmPoint& arm : arms) {
-    const Colour colour = kColours[group_of(arm) % kColours.size()];
+    const Colour colour = kArmsColours[group_of(arm) % kArmsColours.size()];
     const ArmValue& x = arm.looks;
     const ArmValue& y = arm.path_rms_cm;
     draw_interval(sheet, at(x.low, y.mean), at(x.high, y.mean), colour);
@@ -156,11 +157,11 @@ void check(const ArmsPicture& picture) {
 
 void draw_arms(const ArmsPicture& picture, const std::filesystem::path& file) {
   check(picture);
-  const Scales at = scales_of(picture.arms);
+  const ArmScales at = arm_scales(picture.arms);
   const auto groups = groups_of(picture.arms);
-  Sheet sheet(file, kWidth, kHeight);
-  sheet.text(picture.title, {kFrame.x, 36.0}, {26.0, true}, palette::kInk);
-  sheet.text(picture.subtitle, {kFrame.x, 70.0}, {16.0}, palette::kMuted);
+  Sheet sheet(file, kArmsWidth, kArmsHeight);
+  sheet.text(picture.title, {kArmsFrame.x, 36.0}, {26.0, true}, palette::kInk);
+  sheet.text(picture.subtitle, {kArmsFrame.x, 70.0}, {16.0}, palette::kMuted);
   draw_axes(sheet, at);
   draw_legend(sheet, groups);
   draw_points(sheet, at, picture.arms, groups);

@@ -11,12 +11,13 @@
 namespace vigia::report {
 namespace {
 
-constexpr double kWidth = 900.0;
-constexpr double kHeight = 560.0;
-const Box kFrame{90.0, 80.0, 770.0, 400.0};
-constexpr int kSteps = 8;
-constexpr std::array<Colour, 6> kColours{palette::kBlue, palette::kVermillion, palette::kGreen,
-                                         palette::kInk,  palette::kPurple,     palette::kOrange};
+constexpr double kCurveWidth = 900.0;
+constexpr double kCurveHeight = 560.0;
+const Box kCurveFrame{90.0, 80.0, 770.0, 400.0};
+constexpr int kCurveSteps = 8;
+constexpr std::array<Colour, 6> kCurveColours{palette::kBlue,   palette::kVermillion,
+                                              palette::kGreen,  palette::kInk,
+                                              palette::kPurple, palette::kOrange};
 
 /// One axis: what it shows, and a step of 1, 2 or 5 × 10^n, or a decade.
 struct Axis {
@@ -26,7 +27,7 @@ struct Axis {
 
   double step() const {
     if (decades) return 1.0;
-    const double rough = (high - low) / kSteps;
+    const double rough = (high - low) / kCurveSteps;
     const double decade = std::pow(10.0, std::floor(std::log10(rough)));
     for (const double factor : {1.0, 2.0, 5.0})
       if (factor * decade >= rough) return factor * decade;
@@ -36,13 +37,13 @@ struct Axis {
   double first() const { return step() * std::ceil(low / step() - 1e-9); }
 };
 
-struct Scales {
+struct CurveScales {
   Axis x;
   Axis y;
 
   Eigen::Vector2d operator()(const Eigen::Vector2d& p) const {
-    return {kFrame.x + kFrame.width * (p.x() - x.low) / (x.high - x.low),
-            kFrame.bottom() - kFrame.height * (p.y() - y.low) / (y.high - y.low)};
+    return {kCurveFrame.x + kCurveFrame.width * (p.x() - x.low) / (x.high - x.low),
+            kCurveFrame.bottom() - kCurveFrame.height * (p.y() - y.low) / (y.high - y.low)};
   }
 };
 
@@ -83,14 +84,14 @@ Axis axis_of(const CurveChart& chart, Eigen::Index i) {
   return axis;
 }
 
-Scales scales_of(const CurveChart& chart) {
-  Scales at{axis_of(chart, 0), axis_of(chart, 1)};
+CurveScales curve_scales(const CurveChart& chart) {
+  CurveScales at{axis_of(chart, 0), axis_of(chart, 1)};
   if (chart.equal_scales) {
-    const double x_unit = (at.x.high - at.x.low) / kFrame.width;
-    const double y_unit = (at.y.high - at.y.low) / kFrame.height;
+    const double x_unit = (at.x.high - at.x.low) / kCurveFrame.width;
+    const double y_unit = (at.y.high - at.y.low) / kCurveFrame.height;
     const double unit = 1.1 * std::max(x_unit, y_unit);
-    widen(at.x, unit * kFrame.width);
-    widen(at.y, unit * kFrame.height);
+    widen(at.x, unit * kCurveFrame.width);
+    widen(at.y, unit * kCurveFrame.height);
   }
   return at;
 }
@@ -105,20 +106,20 @@ std::string label_of(const Axis& axis, double at) {
   return text.data();
 }
 
-void draw_grid(const Sheet& sheet, const Scales& at) {
+void draw_grid(const Sheet& sheet, const CurveScales& at) {
   for (double x = at.x.first(); x <= at.x.high + 1e-9; x += at.x.step()) {
     const Eigen::Vector2d foot = at({x, at.y.low});
-    sheet.line(foot, {foot.x(), kFrame.y}, {palette::kGrid, 1.0});
+    sheet.line(foot, {foot.x(), kCurveFrame.y}, {palette::kGrid, 1.0});
     sheet.text(label_of(at.x, x), foot + Eigen::Vector2d(0.0, 16.0), {13.0}, palette::kInk,
                {0.5, 0.5});
   }
   for (double y = at.y.first(); y <= at.y.high + 1e-9; y += at.y.step()) {
     const Eigen::Vector2d left = at({at.x.low, y});
-    sheet.line(left, {kFrame.right(), left.y()}, {palette::kGrid, 1.0});
+    sheet.line(left, {kCurveFrame.right(), left.y()}, {palette::kGrid, 1.0});
     sheet.text(label_of(at.y, y), left - Eigen::Vector2d(10.0, 0.0), {13.0}, palette::kInk,
                {1.0, 0.5});
   }
-  sheet.rectangle(kFrame);
+  sheet.rectangle(kCurveFrame);
   sheet.stroke({palette::kMuted, 1.0});
 }
 
@@ -128,7 +129,7 @@ Stroke stroke_of(const Curve& curve, Colour colour) {
   return stroke;
 }
 
-void draw_curve(const Sheet& sheet, const Scales& at, const Curve& curve, Colour colour) {
+void draw_curve(const Sheet& sheet, const CurveScales& at, const Curve& curve, Colour colour) {
   std::vector<Eigen::Vector2d> points;
   std::transform(curve.points.begin(), curve.points.end(), std::back_inserter(points), at);
   if (curve.look == Curve::Look::marks) {
@@ -143,7 +144,7 @@ void draw_curve(const Sheet& sheet, const Scales& at, const Curve& curve, Colour
 }
 
 /// The curve's name with a sample of it; where the next one may begin.
-double draw_key(const Sheet& sheet, double left, const Curve& curve, Colour colour) {
+double draw_curve_key(const Sheet& sheet, double left, const Curve& curve, Colour colour) {
   constexpr double kRow = 62.0;
   const Font font{14.0};
   if (curve.look == Curve::Look::marks) {
@@ -160,21 +161,22 @@ double draw_key(const Sheet& sheet, double left, const Curve& curve, Colour colo
 
 void write_curve_chart(const std::filesystem::path& file, const CurveChart& original) {
   const CurveChart chart = original.decades ? in_decades(original) : original;
-  const Scales at = scales_of(chart);
-  Sheet sheet(file, kWidth, kHeight);
-  sheet.rectangle({0.0, 0.0, kWidth, kHeight});
+  const CurveScales at = curve_scales(chart);
+  Sheet sheet(file, kCurveWidth, kCurveHeight);
+  sheet.rectangle({0.0, 0.0, kCurveWidth, kCurveHeight});
   sheet.fill(palette::kWhite);
-  sheet.text(chart.title, {kFrame.x, 30.0}, {17.0, true}, palette::kInk);
+  sheet.text(chart.title, {kCurveFrame.x, 30.0}, {17.0, true}, palette::kInk);
   draw_grid(sheet, at);
-  double left = kFrame.x;
+  double left = kCurveFrame.x;
   for (std::size_t i = 0; i < chart.curves.size(); ++i) {
-    const Colour colour = kColours.at(i % kColours.size());
+    const Colour colour = kCurveColours.at(i % kCurveColours.size());
     draw_curve(sheet, at, chart.curves[i], colour);
-    left = draw_key(sheet, left, chart.curves[i], colour);
+    left = draw_curve_key(sheet, left, chart.curves[i], colour);
   }
-  sheet.text(chart.x_label, {kFrame.x + 0.5 * kFrame.width, kHeight - 30.0}, {14.0}, palette::kInk,
-             {0.5, 0.5});
-  sheet.upright_text(chart.y_label, {28.0, kFrame.y + 0.5 * kFrame.height}, {14.0}, palette::kInk);
+  sheet.text(chart.x_label, {kCurveFrame.x + 0.5 * kCurveFrame.width, kCurveHeight - 30.0}, {14.0},
+             palette::kInk, {0.5, 0.5});
+  sheet.upright_text(chart.y_label, {28.0, kCurveFrame.y + 0.5 * kCurveFrame.height}, {14.0},
+                     palette::kInk);
   sheet.save();
 }
 

@@ -48,7 +48,7 @@ double top_cm(const Series& series) {
   return top > 0.0 ? 1.08 * top : 1.0;
 }
 
-struct Scales {
+struct ErrorScales {
   Box frame;
   double right_m;
   double top_cm;
@@ -65,7 +65,7 @@ std::string figure(double value, int decimals) {
   return text;
 }
 
-void draw_frame(const Sheet& sheet, const Scales& at) {
+void draw_frame(const Sheet& sheet, const ErrorScales& at) {
   const double step_m = round_step(at.right_m, 26);
   for (int i = 0; i * step_m <= at.right_m; ++i) {
     const Eigen::Vector2d foot = at(i * step_m, 0.0);
@@ -84,7 +84,7 @@ void draw_frame(const Sheet& sheet, const Scales& at) {
   sheet.stroke({palette::kMuted, 1.0});
 }
 
-std::vector<Eigen::Vector2d> curve(const Scales& at, const Series& series,
+std::vector<Eigen::Vector2d> curve(const ErrorScales& at, const Series& series,
                                    const std::vector<double>& values) {
   std::vector<Eigen::Vector2d> points;
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -92,7 +92,7 @@ std::vector<Eigen::Vector2d> curve(const Scales& at, const Series& series,
   return points;
 }
 
-void draw_curves(const Sheet& sheet, const Scales& at, const Series& series,
+void draw_curves(const Sheet& sheet, const ErrorScales& at, const Series& series,
                  const DriveStyle& style) {
   const Sheet::Clip clip = sheet.clip(at.frame);
   if (!series.bound_cm.empty()) {
@@ -110,7 +110,8 @@ void draw_curves(const Sheet& sheet, const Scales& at, const Series& series,
   sheet.stroke(style.estimate);
 }
 
-void draw_looks(const Sheet& sheet, const Scales& at, const MapDrive& drive, const Series& series) {
+void draw_looks(const Sheet& sheet, const ErrorScales& at, const MapDrive& drive,
+                const Series& series) {
   const std::vector<std::size_t> instants = look_instants(drive.truth, drive.looks);
   double free_from = at.frame.x;
   for (std::size_t i = 0; i < drive.looks.size(); ++i) {
@@ -170,7 +171,7 @@ void draw_keys(const Sheet& sheet, const Box& frame, const MapDrive& drive, cons
 void draw_error_chart(const Sheet& sheet, const Box& frame, const MapDrive& drive,
                       const DriveStyle& style) {
   const Series series = series_of(drive);
-  const Scales at{frame, std::max(series.distance_m.back(), 1e-3), top_cm(series)};
+  const ErrorScales at{frame, std::max(series.distance_m.back(), 1e-3), top_cm(series)};
   draw_frame(sheet, at);
   draw_curves(sheet, at, series, style);
   draw_looks(sheet, at, drive, series);

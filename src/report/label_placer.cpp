@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vigia/core/plane_geometry.hpp"
+
 namespace vigia::report {
 namespace {
 
@@ -45,7 +47,7 @@ std::optional<Box> LabelPlacer::place(const Eigen::Vector2d& anchor, const Eigen
   for (int ring = 0; ring < 3; ++ring) {
     for (int i = 0; i < kDirections; ++i) {
       const double angle = 2.0 * M_PI * i / kDirections;
-      const Eigen::Vector2d u(std::cos(angle), std::sin(angle));
+      const Eigen::Vector2d u = unit_vector(angle);
       const Box box = beside(anchor, size, gap * (1 + ring), u);
       const std::optional<double> points = cost(box);
       if (!points) continue;

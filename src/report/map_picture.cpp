@@ -2,6 +2,7 @@
 
 #include "drive_layer.hpp"
 #include "error_chart.hpp"
+#include "map_page.hpp"
 #include "map_view.hpp"
 #include "sheet.hpp"
 
@@ -14,12 +15,6 @@
 namespace vigia::report {
 namespace {
 
-constexpr double kWidth = 1600.0;
-constexpr double kLeft = 84.0;
-constexpr double kRight = 30.0;
-constexpr double kMapTop = 96.0;
-constexpr double kMapHeight = 1000.0;
-constexpr double kMapMargin_m = 0.45;
 constexpr double kAxisHeight = 58.0;
 constexpr double kLegendRow = 27.0;
 constexpr double kChartHeight = 240.0;
@@ -115,12 +110,12 @@ std::vector<LegendEntry> legend_of(const MapDrive& drive, const DriveStyle& styl
 double draw_legend(const Sheet& sheet, const std::vector<LegendEntry>& entries, double top) {
   constexpr double kIcon = 38.0;
   const Font font{14.0};
-  double x = kLeft;
+  double x = kPageLeft;
   double y = top;
   for (const LegendEntry& entry : entries) {
     const double width = kIcon + 9.0 + sheet.text_size(entry.text, font).x() + 32.0;
-    if (x > kLeft && x + width > kWidth - kRight + 32.0) {
-      x = kLeft;
+    if (x > kPageLeft && x + width > kPageWidth - kPageRight + 32.0) {
+      x = kPageLeft;
       y += kLegendRow;
     }
     entry.draw(sheet, {x, y, kIcon, kLegendRow});
@@ -149,25 +144,21 @@ double legend_height(const std::vector<LegendEntry>& entries) {
 void draw_map(const MapDrive& drive, const std::filesystem::path& file) {
   check(drive);
   const DriveStyle style;
-  const MapView view = fit_view(drive.world.plan, kMapMargin_m,
-                                {kLeft, kMapTop, kWidth - kLeft - kRight, kMapHeight});
+  const MapView view = page_view(drive.world.plan);
   const std::vector<LegendEntry> legend = legend_of(drive, style);
   const bool chart = drive.truth.size() > 1;
   const double legend_top = view.box().bottom() + kAxisHeight;
   const double chart_top = legend_top + legend_height(legend) + kChartAbove;
   const double bottom = chart ? chart_top + kChartHeight + kChartBelow : chart_top - kChartAbove;
 
-  Sheet sheet(file, kWidth, std::ceil(bottom + (drive.footer.empty() ? 12.0 : kFooter)));
-  sheet.text(drive.title, {kLeft, 34.0}, {26.0, true}, palette::kInk);
-  sheet.text(drive.subtitle, {kLeft, 68.0}, {16.0}, palette::kMuted);
+  Sheet sheet(file, kPageWidth, std::ceil(bottom + (drive.footer.empty() ? 12.0 : kFooter)));
+  draw_page_title(sheet, drive.title, drive.subtitle);
   draw_floor(sheet, view, drive.world.plan);
   draw_drive(sheet, view, drive, style);
   draw_axes(sheet, view);
   draw_legend(sheet, legend, legend_top);
-  if (chart)
-    draw_error_chart(sheet, {kLeft, chart_top, kWidth - kLeft - kRight, kChartHeight}, drive,
-                     style);
-  sheet.text(drive.footer, {kLeft, bottom + 12.0}, {13.0}, palette::kMuted);
+  if (chart) draw_error_chart(sheet, {kPageLeft, chart_top, kPageText, kChartHeight}, drive, style);
+  sheet.text(drive.footer, {kPageLeft, bottom + 12.0}, {13.0}, palette::kMuted);
   sheet.save();
 }
 

@@ -2,6 +2,7 @@
 
 #include "label_placer.hpp"
 #include "map_marks.hpp"
+#include "map_page.hpp"
 #include "map_view.hpp"
 #include "sheet.hpp"
 
@@ -11,15 +12,9 @@
 namespace vigia::report {
 namespace {
 
-constexpr double kWidth = 1600.0;
-constexpr double kLeft = 84.0;
-constexpr double kRight = 30.0;
-constexpr double kMapTop = 96.0;
-constexpr double kMapHeight = 1000.0;
-constexpr double kMapMargin_m = 0.45;
-constexpr double kAxisHeight = 62.0;
+constexpr double kPlanAxisHeight = 62.0;
 constexpr double kLegendHeight = 42.0;
-constexpr double kHalo = 3.0;  // round labels
+constexpr double kPlanHalo = 3.0;  // round labels
 
 /// Neighbouring areas take turns.
 Colour area_colour(std::size_t index) {
@@ -125,23 +120,23 @@ void draw_labels(const Sheet& sheet, const MapView& view, const PlanPicture& pla
   for (const Landmark& landmark : plan.world.landmarks.all())
     draw_tag(sheet, labels, "L" + std::to_string(landmark.id), view(landmark.centre_w().head<2>()),
              12.0, {-landmark.normal_w().x(), landmark.normal_w().y()}, {18.0, true}, palette::kInk,
-             kHalo);
+             kPlanHalo);
   const double start = plan.path.heading(0.0);
   draw_tag(sheet, labels, "start", view(plan.path.at(0.0)), 9.0,
-           {-std::cos(start), std::sin(start)}, {15.0, true}, palette::kInk, kHalo);
+           {-std::cos(start), std::sin(start)}, {15.0, true}, palette::kInk, kPlanHalo);
   const double end = plan.path.heading(plan.path.length());
   draw_tag(sheet, labels, "goal", view(plan.path.at(plan.path.length())), 9.0,
-           {std::cos(end), -std::sin(end)}, {15.0, true}, palette::kVermillion, kHalo);
+           {std::cos(end), -std::sin(end)}, {15.0, true}, palette::kVermillion, kPlanHalo);
   for (std::size_t i = 0; i < plan.areas.size(); ++i) {
     const double s = 0.5 * (plan.areas[i].from_m + plan.areas[i].to_m);
     const double heading = plan.path.heading(s);
     draw_tag(sheet, labels, plan.areas[i].label, view(plan.path.at(s)), 16.0,
-             {std::sin(heading), std::cos(heading)}, {18.0, true}, area_colour(i), kHalo);
+             {std::sin(heading), std::cos(heading)}, {18.0, true}, area_colour(i), kPlanHalo);
   }
 }
 
-double entry(const Sheet& sheet, double x, double y, const std::string& text,
-             const std::function<void(const Eigen::Vector2d&)>& draw) {
+double plan_entry(const Sheet& sheet, double x, double y, const std::string& text,
+                  const std::function<void(const Eigen::Vector2d&)>& draw) {
   constexpr double kIcon = 40.0;
   const Font font{14.0};
   draw({x + 0.5 * kIcon, y});
@@ -149,16 +144,16 @@ double entry(const Sheet& sheet, double x, double y, const std::string& text,
   return x + kIcon + 8.0 + sheet.text_size(text, font).x() + 28.0;
 }
 
-void draw_legend(const Sheet& sheet, double y) {
+void draw_plan_legend(const Sheet& sheet, double y) {
   const Eigen::Vector2d half(18.0, 0.0);
-  double x = kLeft;
-  x = entry(sheet, x, y, "control areas, by turns", [&](const Eigen::Vector2d& at) {
+  double x = kPageLeft;
+  x = plan_entry(sheet, x, y, "control areas, by turns", [&](const Eigen::Vector2d& at) {
     sheet.line(at - half, at, {area_colour(0), 5.0});
     sheet.line(at, at + half, {area_colour(1), 5.0});
     sheet.line(at - Eigen::Vector2d(0.0, 10.0), at + Eigen::Vector2d(0.0, 10.0),
                {palette::kInk, 3.0});
   });
-  x = entry(sheet, x, y, "control position", [&](const Eigen::Vector2d& at) {
+  x = plan_entry(sheet, x, y, "control position", [&](const Eigen::Vector2d& at) {
     sheet.circle(at, 14.0);
     sheet.fill(area_colour(0).with_alpha(0.10));
     sheet.circle(at, 14.0);
@@ -166,13 +161,13 @@ void draw_legend(const Sheet& sheet, double y) {
     sheet.circle(at, 4.0);
     sheet.stroke({palette::kInk, 1.5});
   });
-  x = entry(sheet, x, y, "turn point, left out",
-            [&](const Eigen::Vector2d& at) { diamond(sheet, at); });
-  x = entry(sheet, x, y, "sight line to the area's landmark, in its colour",
-            [&](const Eigen::Vector2d& at) {
-              sheet.line(at - half, at + half, {palette::kGreen.with_alpha(0.85), 1.8});
-            });
-  entry(sheet, x, y, "landmark and its normal", [&](const Eigen::Vector2d& at) {
+  x = plan_entry(sheet, x, y, "turn point, left out",
+                 [&](const Eigen::Vector2d& at) { diamond(sheet, at); });
+  x = plan_entry(sheet, x, y, "sight line to the area's landmark, in its colour",
+                 [&](const Eigen::Vector2d& at) {
+                   sheet.line(at - half, at + half, {palette::kGreen.with_alpha(0.85), 1.8});
+                 });
+  plan_entry(sheet, x, y, "landmark and its normal", [&](const Eigen::Vector2d& at) {
     sheet.line(at, at + Eigen::Vector2d(16.0, 0.0), {palette::kInk, 2.0});
     sheet.circle(at, 7.0);
     sheet.fill(palette::kGreen);
@@ -184,12 +179,10 @@ void draw_legend(const Sheet& sheet, double y) {
 }  // namespace
 
 void draw_plan(const PlanPicture& plan, const std::filesystem::path& file) {
-  const MapView view = fit_view(plan.world.plan, kMapMargin_m,
-                                {kLeft, kMapTop, kWidth - kLeft - kRight, kMapHeight});
-  const double legend = view.box().bottom() + kAxisHeight;
-  Sheet sheet(file, kWidth, std::ceil(legend + kLegendHeight));
-  sheet.text(plan.title, {kLeft, 34.0}, {26.0, true}, palette::kInk);
-  sheet.text(plan.subtitle, {kLeft, 68.0}, {16.0}, palette::kMuted);
+  const MapView view = page_view(plan.world.plan);
+  const double legend = view.box().bottom() + kPlanAxisHeight;
+  Sheet sheet(file, kPageWidth, std::ceil(legend + kLegendHeight));
+  draw_page_title(sheet, plan.title, plan.subtitle);
   draw_floor(sheet, view, plan.world.plan);
   {
     const Sheet::Clip clip = sheet.clip(view.box());
@@ -202,7 +195,7 @@ void draw_plan(const PlanPicture& plan, const std::filesystem::path& file) {
     draw_labels(sheet, view, plan);
   }
   draw_axes(sheet, view);
-  draw_legend(sheet, legend + 0.5 * kLegendHeight - 6.0);
+  draw_plan_legend(sheet, legend + 0.5 * kLegendHeight - 6.0);
   sheet.save();
 }
 

@@ -7,7 +7,6 @@ namespace vigia::report {
 namespace {
 
 constexpr std::size_t kHeaderEnd = 8 + 25;  // signature and IHDR
-constexpr double kMetresPerInch = 0.0254;
 
 /// CRC-32 as PNG (ISO 3309) has it.
 std::uint32_t checksum(const std::string& bytes) {

@@ -13,7 +13,6 @@
 namespace vigia::report {
 namespace {
 
-constexpr double kMetresPerInch = 0.0254;
 constexpr double kPlateFactor = 1.6;     // half a disc's sheet over its radius, as the simulator's
 constexpr double kNarrowest = 0.12;      // m, so that the words have room
 constexpr double kStrip = 0.034;         // m below the sheet

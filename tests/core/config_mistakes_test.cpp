@@ -1,8 +1,8 @@
 #include "config_files.hpp"
+#include "mistake.hpp"
 
 #include <cmath>
 #include <limits>
-#include <ostream>
 
 #include <gtest/gtest.h>
 
@@ -34,15 +34,6 @@ void read_everything(const std::string& text) {
   }
   if (reader.has("world")) reader.map_or_file("world").finish();
   reader.finish();
-}
-
-struct Mistake {
-  const char* text;
-  const char* message;
-};
-
-void PrintTo(const Mistake& mistake, std::ostream* out) {
-  *out << mistake.message;
 }
 
 class ConfigMistake : public testing::TestWithParam<Mistake> {};

@@ -1,9 +1,9 @@
 #include "vigia/core/world_map.hpp"
 
 #include "config_files.hpp"
+#include "mistake.hpp"
 
 #include <cmath>
-#include <ostream>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -88,15 +88,6 @@ TEST(WorldMap, ResolvedAndWrittenItReadsBackTheSame) {
   read_world_map(second);
   second.finish();
   EXPECT_TRUE(same_tree(*root, *again));
-}
-
-struct Mistake {
-  std::string text;
-  std::string message;
-};
-
-void PrintTo(const Mistake& mistake, std::ostream* out) {
-  *out << mistake.message;
 }
 
 class WorldMistake : public testing::TestWithParam<Mistake> {};

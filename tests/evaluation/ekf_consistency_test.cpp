@@ -16,7 +16,7 @@ using localization::test::Drive;
 using localization::test::DriveNoise;
 using localization::test::DriveStep;
 
-constexpr int kRuns = 100;
+constexpr int kDriveRuns = 100;
 
 EkfParams matched(const DriveNoise& noise) {
   EkfParams params;
@@ -85,14 +85,14 @@ Campaign run_campaign(const DriveNoise& noise, const Params& params) {
   std::vector<std::vector<double>> all;
   std::vector<double> errors;
   std::vector<double> bounds;
-  for (int seed = 0; seed < kRuns; ++seed) {
+  for (int seed = 0; seed < kDriveRuns; ++seed) {
     const Run run = run_filter(simulate_drive(noise, static_cast<std::uint64_t>(seed)), params);
     all.push_back(run.nees);
     errors.push_back(run.squared_error);
     bounds.push_back(run.bound);
-    campaign.rmse += run.errors.position_rmse / kRuns;
-    campaign.final_position += run.errors.position_final / kRuns;
-    campaign.final_heading += run.errors.heading_final / kRuns;
+    campaign.rmse += run.errors.position_rmse / kDriveRuns;
+    campaign.final_position += run.errors.position_final / kDriveRuns;
+    campaign.final_heading += run.errors.heading_final / kDriveRuns;
     campaign.fused += run.fused;
     campaign.other += run.other;
   }

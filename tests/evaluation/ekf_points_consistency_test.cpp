@@ -15,10 +15,10 @@ using localization::test::Drive;
 using localization::test::DriveNoise;
 using localization::test::DriveStep;
 
-constexpr int kRuns = 60;
+constexpr int kPointsRuns = 60;
 
 /// Pattern and tag looks along the drive of the discs' consistency test.
-struct Campaign {
+struct PointsCampaign {
   std::vector<std::vector<double>> nees;
   std::vector<double> errors;
   std::vector<double> bounds;
@@ -26,7 +26,7 @@ struct Campaign {
   int other = 0;
 };
 
-void run(const DriveNoise& noise, std::uint64_t seed, Campaign& campaign) {
+void run(const DriveNoise& noise, std::uint64_t seed, PointsCampaign& campaign) {
   const Drive drive = localization::test::simulate_drive(noise, seed);
   const auto seen = localization::test::points_of(drive, seed);
   const LandmarkMap map = localization::test::room_points();
@@ -63,9 +63,9 @@ void run(const DriveNoise& noise, std::uint64_t seed, Campaign& campaign) {
 
 /// DESIGN's statistics, as for discs. There are 18 look instants: that more than three of them lie
 /// outside a 95 % band by chance has a probability of 1 %.
-void expect_consistent(const DriveNoise& noise) {
-  Campaign campaign;
-  for (std::uint64_t seed = 0; seed < kRuns; ++seed) run(noise, seed, campaign);
+void expect_points_consistent(const DriveNoise& noise) {
+  PointsCampaign campaign;
+  for (std::uint64_t seed = 0; seed < kPointsRuns; ++seed) run(noise, seed, campaign);
   const Anees consistency = anees(campaign.nees, 3);
   const Estimate ratio = pcrlb_ratio(campaign.errors, campaign.bounds, 1);
   EXPECT_GE(consistency.inside_band, 15.0 / 18.0);
@@ -77,14 +77,14 @@ void expect_consistent(const DriveNoise& noise) {
 }
 
 TEST(EkfPointsConsistency, IsConsistentAndAtTheBoundWithPatternsAndTags) {
-  expect_consistent({});
+  expect_points_consistent({});
 }
 
 TEST(EkfPointsConsistency, IsConsistentWithBothPartsOfTheReadingErrorAndCoarserDots) {
   DriveNoise noise;
   noise.sensor.reading_angle = from_deg(0.1);
   noise.pixel_sigma = 0.3;
-  expect_consistent(noise);
+  expect_points_consistent(noise);
 }
 
 }  // namespace

@@ -10,10 +10,10 @@ namespace vigia::localization {
 namespace {
 
 const Pose2 kTruth{4.0, 3.0, 0.2};
-const Landmark kPattern = test::pattern(4, 5.6, 3.9, 1.5, 180.0);
+const Landmark kSeenPattern = test::pattern(4, 5.6, 3.9, 1.5, 180.0);
 const LookBias kBias{0.004, -0.003, 0.002};
 
-EkfParams params_of_test() {
+EkfParams points_params() {
   EkfParams params;
   params.iterations = 20;
   params.converged = 1e-8;
@@ -37,17 +37,18 @@ Prior prior_about(const Pose2& pose) {
 
 /// Hᵀy, which does not depend on how the points were compressed.
 Vector6 gradient_at(const PointsObservation& seen, const Vector6& x) {
-  const auto measured = measure_points(seen_points(kPattern, seen), kPattern.wMl, seen.sensor, {},
-                                       Pose2::from_vector(x.head<3>()), {x(3), x(4), x(5)});
+  const auto measured =
+      measure_points(seen_points(kSeenPattern, seen), kSeenPattern.wMl, seen.sensor, {},
+                     Pose2::from_vector(x.head<3>()), {x(3), x(4), x(5)});
   return measured->H.transpose() * measured->y;
 }
 
 TEST(EkfPoints, TheCompressedJacobianEqualsFiniteDifferences) {
-  const PointsObservation seen = seen_by(kPattern, 0.0, 1);
+  const PointsObservation seen = seen_by(kSeenPattern, 0.0, 1);
   Vector6 truth;
   truth << kTruth.vector(), kBias.pan, kBias.tilt, kBias.log_focal;
-  const auto measured =
-      measure_points(seen_points(kPattern, seen), kPattern.wMl, seen.sensor, {}, kTruth, kBias);
+  const auto measured = measure_points(seen_points(kSeenPattern, seen), kSeenPattern.wMl,
+                                       seen.sensor, {}, kTruth, kBias);
   ASSERT_TRUE(measured);
   EXPECT_LT(measured->chi2, 1e-12);
   const Matrix6 information = measured->H.transpose() * measured->H;
@@ -59,23 +60,23 @@ TEST(EkfPoints, TheCompressedJacobianEqualsFiniteDifferences) {
 }
 
 TEST(EkfPoints, OneImageTeachesWhatItsInformationSays) {
-  EkfLocalizer ekf(LandmarkMap({kPattern}), {}, params_of_test());
+  EkfLocalizer ekf(LandmarkMap({kSeenPattern}), {}, points_params());
   const Prior prior = prior_about({4.03, 2.98, 0.21});
   ekf.reset({}, prior);
-  const PointsObservation seen = seen_by(kPattern, 0.1, 1);
+  const PointsObservation seen = seen_by(kSeenPattern, 0.1, 1);
   const UpdateResult result = ekf.update(seen);
   ASSERT_EQ(result.status, UpdateStatus::fused);
   EXPECT_EQ(result.dof, 5);  // a turn about the camera and a pan back leave no trace
-  EXPECT_EQ(result.landmark, kPattern.id);
+  EXPECT_EQ(result.landmark, kSeenPattern.id);
 
   // The state is a stationary point of prior and points, its covariance the inverse information.
   const Vector6 x = ekf.state().mean;
-  const auto points = seen_points(kPattern, seen, params_of_test().centre_floor_px);
-  const auto measured = measure_points(points, kPattern.wMl, seen.sensor, {},
+  const auto points = seen_points(kSeenPattern, seen, points_params().centre_floor_px);
+  const auto measured = measure_points(points, kSeenPattern.wMl, seen.sensor, {},
                                        Pose2::from_vector(x.head<3>()), {x(3), x(4), x(5)});
   Matrix6 information = Matrix6::Zero();
   information.topLeftCorner<3, 3>() = prior.covariance.inverse();
-  information.bottomRightCorner<3, 3>() = look_covariance(params_of_test().sensor).inverse();
+  information.bottomRightCorner<3, 3>() = look_covariance(points_params().sensor).inverse();
   Vector6 start = Vector6::Zero();
   start.head<3>() = prior.pose.vector();
   const Vector6 pull = information * (start - x) + measured->H.transpose() * measured->y;
@@ -86,20 +87,20 @@ TEST(EkfPoints, OneImageTeachesWhatItsInformationSays) {
 }
 
 TEST(EkfPoints, ALandmarkThatIsNotOfTheMapIsGated) {
-  EkfLocalizer ekf(LandmarkMap({kPattern}), {}, {});
+  EkfLocalizer ekf(LandmarkMap({kSeenPattern}), {}, {});
   ekf.reset({}, prior_about(kTruth));
-  PointsObservation seen = seen_by(kPattern, 0.1, 1);
+  PointsObservation seen = seen_by(kSeenPattern, 0.1, 1);
   seen.landmark = 5;
   EXPECT_EQ(ekf.update(seen).status, UpdateStatus::gated);
 }
 
 TEST(EkfPoints, TheImageOfAnotherLandmarkIsGated) {
-  Landmark other = kPattern;
+  Landmark other = kSeenPattern;
   other.id = 5;
   other.wMl.translation().y() += 0.4;
-  EkfLocalizer ekf(LandmarkMap({kPattern, other}), {}, {});
+  EkfLocalizer ekf(LandmarkMap({kSeenPattern, other}), {}, {});
   ekf.reset({}, prior_about(kTruth));
-  PointsObservation seen = seen_by(kPattern, 0.1, 1);
+  PointsObservation seen = seen_by(kSeenPattern, 0.1, 1);
   seen.landmark = 5;
   EXPECT_EQ(ekf.update(seen).status, UpdateStatus::gated);
   seen.landmark = 4;
@@ -107,19 +108,19 @@ TEST(EkfPoints, TheImageOfAnotherLandmarkIsGated) {
 }
 
 TEST(EkfPoints, APatternWithOneDotAstrayIsGated) {
-  EkfLocalizer ekf(LandmarkMap({kPattern}), {}, {});
+  EkfLocalizer ekf(LandmarkMap({kSeenPattern}), {}, {});
   ekf.reset({}, prior_about(kTruth));
-  PointsObservation seen = seen_by(kPattern, 0.1, 1);
+  PointsObservation seen = seen_by(kSeenPattern, 0.1, 1);
   seen.points[7].uv.x() += 1.5;
   EXPECT_EQ(ekf.update(seen).status, UpdateStatus::gated);
 }
 
 TEST(EkfPoints, AnImageWithoutUsablePointsIsDegenerate) {
-  EkfLocalizer ekf(LandmarkMap({kPattern}), {}, {});
-  PointsObservation seen = seen_by(kPattern, 0.1, 1);
+  EkfLocalizer ekf(LandmarkMap({kSeenPattern}), {}, {});
+  PointsObservation seen = seen_by(kSeenPattern, 0.1, 1);
   seen.points.clear();
   EXPECT_EQ(ekf.update(seen).status, UpdateStatus::degenerate);
-  seen = seen_by(kPattern, 0.1, 1);
+  seen = seen_by(kSeenPattern, 0.1, 1);
   for (LabelledPoint& point : seen.points) point.label += 100;
   EXPECT_EQ(ekf.update(seen).status, UpdateStatus::degenerate);
 }
@@ -133,16 +134,16 @@ TEST(EkfPoints, RightImagesPassTheGateAsOftenAsItSays) {
   double nis = 0.0;
   RandomStream random(5, "gate");
   for (int i = 0; i < kRuns; ++i) {
-    EkfLocalizer ekf(LandmarkMap({kPattern}), {}, params);
+    EkfLocalizer ekf(LandmarkMap({kSeenPattern}), {}, params);
     Prior prior = prior_about(kTruth);
     const Eigen::Vector3d sigma = prior.covariance.diagonal().cwiseSqrt();
     prior.pose = {kTruth.x + sigma.x() * random.normal(), kTruth.y + sigma.y() * random.normal(),
                   kTruth.theta + sigma.z() * random.normal()};
     ekf.reset({}, prior);
     const LookBias bias = test::draw_bias(random, params.sensor);
-    SensorSnapshot sensor = seen_by(kPattern, 0.0, 1).sensor;
+    SensorSnapshot sensor = seen_by(kSeenPattern, 0.0, 1).sensor;
     const auto seen =
-        test::observe_points(kPattern, sensor, {}, to_isometry(kTruth), bias, 0.0, 0.1, random);
+        test::observe_points(kSeenPattern, sensor, {}, to_isometry(kTruth), bias, 0.0, 0.1, random);
     const UpdateResult result = ekf.update(seen);
     if (result.status != UpdateStatus::fused) ++gated;
     nis += result.nis / kRuns;
@@ -154,12 +155,12 @@ TEST(EkfPoints, RightImagesPassTheGateAsOftenAsItSays) {
 }
 
 TEST(EkfPoints, ImagesInReverseOrderGiveWhatTheyGiveInOrder) {
-  EkfLocalizer in_order(LandmarkMap({kPattern}), {}, params_of_test());
+  EkfLocalizer in_order(LandmarkMap({kSeenPattern}), {}, points_params());
   in_order.reset({}, prior_about({4.02, 3.01, 0.19}));
   EkfLocalizer reversed = in_order;
   std::vector<PointsObservation> images;
   for (int i = 0; i < 5; ++i) {
-    images.push_back(seen_by(kPattern, 0.1, static_cast<std::uint64_t>(i)));
+    images.push_back(seen_by(kSeenPattern, 0.1, static_cast<std::uint64_t>(i)));
     images.back().sensor.stamp = Stamp::from_seconds(0.04 * i);
   }
   std::vector<OdometryIncrement> still;

@@ -9,7 +9,7 @@ namespace vigia::localization {
 namespace {
 
 /// On the wall x = 6, above the camera.
-const Landmark kPattern = test::pattern(4, 6.0, 3.9, 2.15, 180.0);
+const Landmark kFixPattern = test::pattern(4, 6.0, 3.9, 2.15, 180.0);
 const HeadGeometry kHead{{0.2, 0.05, 1.1}, 0.1, {0.03, 0.01, 0.02}};
 
 /// A robot on a ramp: 0.25 m up, its front 6° up, its left 2° down.
@@ -34,13 +34,13 @@ PointsObservation seen_from(const Eigen::Isometry3d& wMr, const Landmark& landma
 }
 
 PatternFixLocalizer localizer(const PatternFixParams& params = {}) {
-  return PatternFixLocalizer(LandmarkMap({kPattern}), kHead, params);
+  return PatternFixLocalizer(LandmarkMap({kFixPattern}), kHead, params);
 }
 
 TEST(PatternFix, OneImageOnARampGivesTheWholePose) {
   RandomStream random(1, "unused");
   PatternFixLocalizer fix = localizer();
-  ASSERT_EQ(fix.update(seen_from(on_the_ramp(), kPattern, {}, 0.0, random)).status,
+  ASSERT_EQ(fix.update(seen_from(on_the_ramp(), kFixPattern, {}, 0.0, random)).status,
             UpdateStatus::fused);
   ASSERT_TRUE(fix.belief().in_space);
   EXPECT_TRUE(fix.belief().in_space->wMr.isApprox(on_the_ramp(), 1e-6));
@@ -66,7 +66,7 @@ TEST(PatternFix, ItsCovarianceIsThatOfItsErrorsWithHeadAndFocalErrorIncluded) {
     bias.pan += params.sensor.reading_angle * random.normal();
     bias.tilt += params.sensor.reading_angle * random.normal();
     fix.reset({}, {});
-    PointsObservation seen = seen_from(on_the_ramp(), kPattern, bias, 0.2, random);
+    PointsObservation seen = seen_from(on_the_ramp(), kFixPattern, bias, 0.2, random);
     ASSERT_NE(fix.update(seen).status, UpdateStatus::unsupported);
     const SpatialPose& pose = *fix.belief().in_space;
     Eigen::Matrix<double, 6, 1> e;
@@ -87,7 +87,7 @@ TEST(PatternFix, ItsCovarianceIsThatOfItsErrorsWithHeadAndFocalErrorIncluded) {
 TEST(PatternFix, HoldsWithOdometryBetweenLooksAlongTheRamp) {
   RandomStream random(1, "unused");
   PatternFixLocalizer fix = localizer();
-  fix.update(seen_from(on_the_ramp(), kPattern, {}, 0.0, random));
+  fix.update(seen_from(on_the_ramp(), kFixPattern, {}, 0.0, random));
   const double before = fix.belief().position_sigma();
   fix.predict({{}, Stamp::from_seconds(1.0), 0.0, 0.5, 0.0});
   const Eigen::Isometry3d expected =
@@ -107,7 +107,8 @@ TEST(PatternFix, ALateImageIsMovedToThePresent) {
   fix.reset({}, {});
   fix.predict(drive(0.0, 0.2));
   fix.predict(drive(0.2, 0.4));
-  const auto late = seen_from(on_the_ramp(), kPattern, {}, 0.0, random, Stamp::from_seconds(0.1));
+  const auto late =
+      seen_from(on_the_ramp(), kFixPattern, {}, 0.0, random, Stamp::from_seconds(0.1));
   ASSERT_EQ(fix.update(late).status, UpdateStatus::fused);
   const Eigen::Isometry3d moved_on =
       on_the_ramp() *
@@ -115,7 +116,8 @@ TEST(PatternFix, ALateImageIsMovedToThePresent) {
   EXPECT_TRUE(fix.belief().in_space->wMr.isApprox(moved_on, 1e-6));
   EXPECT_EQ(fix.belief().stamp, Stamp::from_seconds(0.4));
 
-  const auto ahead = seen_from(on_the_ramp(), kPattern, {}, 0.0, random, Stamp::from_seconds(0.5));
+  const auto ahead =
+      seen_from(on_the_ramp(), kFixPattern, {}, 0.0, random, Stamp::from_seconds(0.5));
   ASSERT_EQ(fix.update(ahead).status, UpdateStatus::fused);
   fix.predict(drive(0.4, 0.6));
   const Eigen::Isometry3d a_bit_on =
@@ -130,7 +132,7 @@ TEST(PatternFix, OlderThanItsHistoryIsTooLate) {
   fix.reset({}, {});
   for (int i = 0; i < 30; ++i)
     fix.predict({Stamp::from_seconds(0.1 * i), Stamp::from_seconds(0.1 * (i + 1)), 0, 0.01, 0});
-  const auto old = seen_from(on_the_ramp(), kPattern, {}, 0.0, random, Stamp::from_seconds(0.5));
+  const auto old = seen_from(on_the_ramp(), kFixPattern, {}, 0.0, random, Stamp::from_seconds(0.5));
   EXPECT_EQ(fix.update(old).status, UpdateStatus::too_late);
 }
 
@@ -138,15 +140,15 @@ TEST(PatternFix, CountsWhatItCannotUse) {
   RandomStream random(1, "unused");
   const Landmark tag = test::tag(7, 6.0, 2.9, 2.15, 180.0);
   const Landmark frontal = test::pattern(8, 6.0, 2.4, 1.3, 180.0);
-  PatternFixLocalizer fix(LandmarkMap({kPattern, tag, frontal}), kHead, {});
+  PatternFixLocalizer fix(LandmarkMap({kFixPattern, tag, frontal}), kHead, {});
   EXPECT_EQ(fix.update(EllipseObservation{}).status, UpdateStatus::unsupported);
   const Eigen::Isometry3d wMr = to_isometry({3.2, 2.4, 0.1});
   EXPECT_EQ(fix.update(seen_from(wMr, tag, {}, 0.0, random)).status, UpdateStatus::unsupported);
   EXPECT_EQ(fix.update(seen_from(wMr, frontal, {}, 0.0, random)).status, UpdateStatus::degenerate);
-  PointsObservation unknown = seen_from(wMr, kPattern, {}, 0.0, random);
+  PointsObservation unknown = seen_from(wMr, kFixPattern, {}, 0.0, random);
   unknown.landmark = 99;
   EXPECT_EQ(fix.update(unknown).status, UpdateStatus::gated);
-  PointsObservation astray = seen_from(wMr, kPattern, {}, 0.1, random);
+  PointsObservation astray = seen_from(wMr, kFixPattern, {}, 0.1, random);
   astray.points[5].uv.x() += 2.0;
   EXPECT_EQ(fix.update(astray).status, UpdateStatus::gated);
   EXPECT_EQ(fix.count(UpdateStatus::unsupported), 2);
@@ -160,7 +162,7 @@ TEST(PatternFix, OfViewAndTwinTheOneThatStandsUprightIsTaken) {
   PatternFixLocalizer fix = localizer();
   int fused = 0;
   for (int i = 0; i < 50; ++i) {
-    if (fix.update(seen_from(wMr, kPattern, {}, 1.0, random)).status != UpdateStatus::fused)
+    if (fix.update(seen_from(wMr, kFixPattern, {}, 1.0, random)).status != UpdateStatus::fused)
       continue;
     ++fused;
     EXPECT_GT(fix.belief().in_space->wMr.linear()(2, 2), std::cos(from_deg(15.0)));

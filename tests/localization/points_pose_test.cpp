@@ -10,7 +10,7 @@
 namespace vigia::localization {
 namespace {
 
-const Landmark kPattern = test::pattern(1, 0.0, 0.0, 0.0, 0.0);
+const Landmark kPosePattern = test::pattern(1, 0.0, 0.0, 0.0, 0.0);
 const Landmark kTag = test::tag(2, 0.0, 0.0, 0.0, 0.0);
 const Intrinsics kWide{640, 480, 700.0, 710.0, 320.0, 238.0, 0.06};
 
@@ -28,7 +28,7 @@ Eigen::Isometry3d pose_at(double phi_deg, double distance) {
 
 TEST(PointsPose, RecoversAnyViewOfPatternAndTagThroughADistortingLens) {
   RandomStream random(1, "unused");
-  for (const Landmark& landmark : {kPattern, kTag}) {
+  for (const Landmark& landmark : {kPosePattern, kTag}) {
     for (const double phi : {2.0, 20.0, 45.0, 70.0}) {
       for (const double distance : {0.7, 2.0, 5.0}) {
         const Eigen::Isometry3d truth = pose_at(phi, distance);
@@ -58,16 +58,16 @@ TEST(PointsPose, IsAmbiguousWhenNoiseHidesThePerspective) {
   const PointsPose far = solve(kTag, kWide, pose_at(30.0, 6.0), 0.5, random);
   EXPECT_EQ(far.status, PointsPoseStatus::ambiguous);
   EXPECT_TRUE(far.twin);
-  const PointsPose near = solve(kPattern, test::evi_d31(), pose_at(45.0, 1.6), 0.1, random);
+  const PointsPose near = solve(kPosePattern, test::evi_d31(), pose_at(45.0, 1.6), 0.1, random);
   EXPECT_EQ(near.status, PointsPoseStatus::solved);
 }
 
 TEST(PointsPose, IsSolvedByFiveOfSeventeenDots) {
   RandomStream random(1, "unused");
   const Eigen::Isometry3d truth = pose_at(40.0, 2.0);
-  auto seen = test::observe_points(kPattern, kWide, truth, 0.0, random);
+  auto seen = test::observe_points(kPosePattern, kWide, truth, 0.0, random);
   seen.points.erase(seen.points.begin() + 1, seen.points.end() - 4);
-  const auto found = solve_points(seen_points(kPattern, seen), kWide);
+  const auto found = solve_points(seen_points(kPosePattern, seen), kWide);
   ASSERT_TRUE(found.has_pose());
   EXPECT_LT(move_between(truth, found.pose.cMl).norm(), 1e-6);
   EXPECT_EQ(found.pose.dof, 4);
@@ -75,12 +75,13 @@ TEST(PointsPose, IsSolvedByFiveOfSeventeenDots) {
 
 TEST(PointsPose, ThreePointsAreTooFewAndFourOnALineDegenerate) {
   RandomStream random(1, "unused");
-  auto seen = test::observe_points(kPattern, kWide, pose_at(40.0, 2.0), 0.0, random);
+  auto seen = test::observe_points(kPosePattern, kWide, pose_at(40.0, 2.0), 0.0, random);
   const std::vector<LabelledPoint> all = seen.points;
   seen.points = {all[0], all[1], all[2]};
-  EXPECT_EQ(solve_points(seen_points(kPattern, seen), kWide).status, PointsPoseStatus::too_few);
+  EXPECT_EQ(solve_points(seen_points(kPosePattern, seen), kWide).status, PointsPoseStatus::too_few);
   seen.points = {all[0], all[1], all[5], all[9], all[13]};  // first and fifth of both rings
-  EXPECT_EQ(solve_points(seen_points(kPattern, seen), kWide).status, PointsPoseStatus::degenerate);
+  EXPECT_EQ(solve_points(seen_points(kPosePattern, seen), kWide).status,
+            PointsPoseStatus::degenerate);
 }
 
 /// NEES of 6 degrees of freedom and χ² of the residuals over many noisy views.
@@ -106,7 +107,7 @@ TEST(PointsPose, ItsCovarianceIsThatOfItsErrors) {
   constexpr int kRuns = 1000;
   // Four standard errors of a mean of χ² of 6 dof, and of χ²/dof.
   const double nees_tolerance = 4.0 * std::sqrt(2.0 * 6.0 / kRuns);
-  const Spread pattern = spread_of(kPattern, pose_at(45.0, 2.5), 0.5, kRuns);
+  const Spread pattern = spread_of(kPosePattern, pose_at(45.0, 2.5), 0.5, kRuns);
   EXPECT_NEAR(pattern.nees, 6.0, nees_tolerance);
   EXPECT_NEAR(pattern.chi2_per_dof, 1.0, 4.0 * std::sqrt(2.0 / 28.0 / kRuns));
   const Spread tag = spread_of(kTag, pose_at(45.0, 2.5), 0.2, kRuns);
@@ -117,8 +118,8 @@ TEST(PointsPose, ItsCovarianceIsThatOfItsErrors) {
 TEST(PointsPose, AFocalLengthThatIsOffMovesThePoseAsItSays) {
   RandomStream random(1, "unused");
   const Eigen::Isometry3d truth = pose_at(45.0, 2.0);
-  const auto seen = test::observe_points(kPattern, test::evi_d31(), truth, 0.0, random);
-  const auto points = seen_points(kPattern, seen);
+  const auto seen = test::observe_points(kPosePattern, test::evi_d31(), truth, 0.0, random);
+  const auto points = seen_points(kPosePattern, seen);
   Intrinsics longer = test::evi_d31();
   constexpr double kStep = 1e-4;
   longer.px *= std::exp(kStep);

@@ -7,13 +7,13 @@
 namespace vigia::localization {
 namespace {
 
-const Landmark kPattern = test::pattern(1, 0.0, 0.0, 0.0, 0.0);
-const PatternShape kShape = std::get<PatternShape>(kPattern.shape);
+const Landmark kRingPattern = test::pattern(1, 0.0, 0.0, 0.0, 0.0);
+const PatternShape kShape = std::get<PatternShape>(kRingPattern.shape);
 
 PointsObservation seen_from(const Eigen::Isometry3d& cMl, double sigma = 0.0,
                             std::uint64_t seed = 1) {
   RandomStream random(seed, "ring");
-  return test::observe_points(kPattern, test::evi_d31(), cMl, sigma, random);
+  return test::observe_points(kRingPattern, test::evi_d31(), cMl, sigma, random);
 }
 
 /// The dots as points: the closed forms take a dot's image for that of its centre.
@@ -50,7 +50,7 @@ TEST(ViewParameters, ACameraBelowThePatternHasThetaZero) {
   const Eigen::Vector3d z = -wMc.translation().normalized();
   const Eigen::Vector3d x = Eigen::Vector3d::UnitY();  // the viewer's right
   wMc.linear() << x, z.cross(x), z;
-  const ViewParameters view = view_of(wMc.inverse() * kPattern.wMl);
+  const ViewParameters view = view_of(wMc.inverse() * kRingPattern.wMl);
   expect_view(view, {std::atan2(1.0, 2.0), 0.0, 0.0, std::sqrt(5.0)}, 1e-12);
 }
 

@@ -9,7 +9,7 @@
 namespace vigia::mission {
 namespace {
 
-class Story : public Listener {
+class RealisticStory : public Listener {
  public:
   void on_event(const Event& event) override { ++count[event.kind]; }
   void on_tick(const Tick& tick) override {
@@ -46,7 +46,7 @@ TEST(Realistic, ADriveRunsToItsEndAndTheSameSeedGivesTheSameBytes) {
 
 TEST(Realistic, FramesArriveLateAndBelongToTheirExposureAndTheirLook) {
   const MissionSetup setup = realistic({"timeout_s=30"});
-  Story story;
+  RealisticStory story;
   run_mission(setup, 1, {&story});
   EXPECT_GT(story.observations, 50);
   EXPECT_EQ(story.late_by.ns, 80'000'000);
@@ -58,7 +58,7 @@ TEST(Realistic, LatencyAloneLeavesTheTargetCentred) {
   const MissionSetup setup =
       load_mission(std::string(VIGIA_SOURCE_DIR) + "/config/missions/armingol-room.yaml",
                    {"disturbances.latency=realistic", "planner.dwell_s=2"});
-  Story story;
+  RealisticStory story;
   evaluation::DriveScorer scorer;
   EXPECT_EQ(run_mission(setup, 1, {&story, &scorer}), Outcome::arrived);
   EXPECT_EQ(story.late_by.ns, 80'000'000);
@@ -70,7 +70,7 @@ TEST(Realistic, AKidnappedRobotSaysThatItIsLost) {
   const MissionSetup setup =
       load_mission(std::string(VIGIA_SOURCE_DIR) + "/config/missions/armingol-room.yaml",
                    {"disturbances.kidnapping={earliest_s: 20, latest_s: 30}", "timeout_s=150"});
-  Story story;
+  RealisticStory story;
   evaluation::DriveScorer scorer;
   run_mission(setup, 3, {&story, &scorer});
   EXPECT_EQ(story.count["kidnapped"], 1);

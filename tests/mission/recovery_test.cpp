@@ -9,7 +9,7 @@
 namespace vigia::mission {
 namespace {
 
-class Story : public Listener {
+class RecoveryStory : public Listener {
  public:
   void on_event(const Event& event) override { kinds.push_back(event.kind); }
   bool tells(const std::string& kind) const {
@@ -28,7 +28,7 @@ MissionSetup mission_with_prior_off_by(const Pose2& offset) {
 TEST(Recovery, ARobotThatWasToldAWrongStartSaysItIsLostFindsItselfAndArrives) {
   const MissionSetup setup = mission_with_prior_off_by({0.3, -0.3, from_deg(-15)});
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    Story story;
+    RecoveryStory story;
     evaluation::DriveScorer scorer;
     const Outcome outcome = run_mission(setup, seed, {&story, &scorer});
     EXPECT_EQ(outcome, Outcome::arrived) << "seed " << seed;
@@ -47,7 +47,7 @@ TEST(Recovery, TwoLandmarksThatAreNotThereSufficeWhereThereIsNoThirdToLookAt) {
       load_mission(std::string(VIGIA_SOURCE_DIR) + "/config/missions/armingol-room.yaml",
                    {discs, "disturbances.missing_landmarks={probability: 1, at_most_one_in: 1}",
                     "planner.exclude_s=60", "timeout_s=30"});
-  Story story;
+  RecoveryStory story;
   run_mission(setup, 1, {&story});
   const auto lost = std::find(story.kinds.begin(), story.kinds.end(), "lost");
   ASSERT_NE(lost, story.kinds.end());
@@ -60,7 +60,7 @@ TEST(Recovery, ARobotThatSeesNoLandmarkGivesUpAndSaysSo) {
   setup.ekf.lost_sigma_m = 1e-4;
   setup.recovery.sweeps = 1;
   setup.recovery.tilt = from_deg(-80);
-  Story story;
+  RecoveryStory story;
   EXPECT_EQ(run_mission(setup, 1, {&story}), Outcome::stuck);
   EXPECT_TRUE(story.tells("lost"));
   EXPECT_FALSE(story.tells("recovered"));

@@ -1,5 +1,7 @@
 #include "lanes.hpp"
 
+#include "hall.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,28 +12,20 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kRadius = 0.27;
-
-FloorPlan hall() {
-  return FloorPlan({{0.0, 0.0}, {10.0, 0.0}, {10.0, 6.0}, {0.0, 6.0}}, 2.8, {}, {});
-}
-
-Path straight() {
-  return Path({{1.0, 3.0}, {9.0, 3.0}}).resampled(0.05);
-}
+constexpr double kHull = 0.27;
 
 /// Least distance between the hull of a robot on the way and a thing.
 double least_distance(const WayRound& way, const RoundObstacle& thing) {
   const Path path(way);
   double least = 1e9;
   for (double s = 0.0; s <= path.length(); s += 0.01)
-    least = std::min(least, (path.at(s) - thing.centre).norm() - thing.radius_m - kRadius);
+    least = std::min(least, (path.at(s) - thing.centre).norm() - thing.radius_m - kHull);
   return least;
 }
 
 TEST(Lanes, WithNothingInTheWayTheWayIsThePath) {
   const FloorPlan plan = hall();
-  Lanes lanes(plan, kRadius, {});
+  Lanes lanes(plan, kHull, {});
   const auto way = lanes.search(straight(), 2.0, {3.0, 3.0}, {}, 0.1);
   ASSERT_TRUE(way);
   for (const Vector2d& p : *way) EXPECT_NEAR(p.y(), 3.0, 1e-12);
@@ -41,7 +35,7 @@ TEST(Lanes, WithNothingInTheWayTheWayIsThePath) {
 TEST(Lanes, KeepItsDistanceFromEveryThing) {
   const FloorPlan plan = hall();
   for (double y = 2.3; y < 3.8; y += 0.1) {
-    Lanes lanes(plan, kRadius, {});
+    Lanes lanes(plan, kHull, {});
     const std::vector<RoundObstacle> things{{{4.2, y}, 0.2}, {{5.3, 6.0 - y}, 0.2}};
     const auto way = lanes.search(straight(), 2.0, {3.0, 3.0}, things, 0.1);
     ASSERT_TRUE(way) << y;
@@ -52,22 +46,22 @@ TEST(Lanes, KeepItsDistanceFromEveryThing) {
 
 TEST(Lanes, KeepClearOfKnownWalls) {
   const FloorPlan plan({{0.0, 2.2}, {10.0, 2.2}, {10.0, 6.0}, {0.0, 6.0}}, 2.8, {}, {});
-  Lanes lanes(plan, kRadius, {});
+  Lanes lanes(plan, kHull, {});
   const auto way = lanes.search(straight(), 2.0, {3.0, 3.0}, {{{4.2, 2.9}, 0.2}}, 0.1);
   ASSERT_TRUE(way);
   for (const Vector2d& p : *way)
-    EXPECT_GE(plan.clearance(p), kRadius + AvoidanceParams{}.wall_m - 1e-9);
+    EXPECT_GE(plan.clearance(p), kHull + AvoidanceParams{}.wall_m - 1e-9);
 }
 
 TEST(Lanes, SayWhenNoneIsFree) {
   const FloorPlan plan({{0.0, 2.2}, {10.0, 2.2}, {10.0, 3.8}, {0.0, 3.8}}, 2.8, {}, {});
-  Lanes lanes(plan, kRadius, {});
+  Lanes lanes(plan, kHull, {});
   EXPECT_FALSE(lanes.search(straight(), 2.0, {3.0, 3.0}, {{{4.2, 3.0}, 0.2}}, 0.1));
 }
 
 TEST(Lanes, StayOnTheSideThatWasChosenUntilTheyForget) {
   const FloorPlan plan = hall();
-  Lanes lanes(plan, kRadius, {});
+  Lanes lanes(plan, kHull, {});
   const auto left_of = [](const WayRound& way) {
     return std::any_of(way.begin(), way.end(), [](const Vector2d& p) { return p.y() > 3.2; });
   };
@@ -79,7 +73,7 @@ TEST(Lanes, StayOnTheSideThatWasChosenUntilTheyForget) {
 
 TEST(Lanes, AtThePathsEndLeadToTheEndItself) {
   const FloorPlan plan = hall();
-  Lanes lanes(plan, kRadius, {});
+  Lanes lanes(plan, kHull, {});
   const auto way = lanes.search(straight(), 6.5, {7.5, 3.2}, {{{8.0, 3.9}, 0.2}}, 0.1);
   ASSERT_TRUE(way);
   EXPECT_LT((way->back() - Vector2d(9.0, 3.0)).norm(), 1e-9);

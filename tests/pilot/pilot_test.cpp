@@ -1,5 +1,6 @@
 #include "vigia/pilot/pilot.hpp"
 
+#include "hall.hpp"
 #include "ring_drive.hpp"
 
 #include <gtest/gtest.h>
@@ -9,20 +10,12 @@ namespace {
 
 using Eigen::Vector2d;
 
-FloorPlan hall() {
-  return FloorPlan({{0.0, 0.0}, {10.0, 0.0}, {10.0, 6.0}, {0.0, 6.0}}, 2.8, {}, {});
-}
-
 /// The hall with a wall across it that leaves a door of @p width round y = 3.
 FloorPlan hall_with_door(double width) {
   return FloorPlan(
       {{0.0, 0.0}, {10.0, 0.0}, {10.0, 6.0}, {0.0, 6.0}}, 2.8,
       {{{5.0, 0.0}, {5.0, 3.0 - 0.5 * width}, 2.8}, {{5.0, 3.0 + 0.5 * width}, {5.0, 6.0}, 2.8}},
       {});
-}
-
-Path straight() {
-  return Path({{1.0, 3.0}, {9.0, 3.0}}).resampled(0.05);
 }
 
 /// Along walls at the least distance that a route keeps, round a corner, through a door.

@@ -48,7 +48,7 @@ Eigen::Isometry3d in_front() {
   return camera_at(8.5, 2.5, -80, 6.0);
 }
 
-struct Moments {
+struct MomentSums {
   double area = 0.0;
   Eigen::Vector2d first = Eigen::Vector2d::Zero();
 
@@ -60,8 +60,8 @@ struct Moments {
 };
 
 /// Area and first moments of a polygon's image, its sides finely divided (Green's theorem).
-Moments polygon_moments(const std::vector<Eigen::Vector3d>& corners_w, const Eigen::Isometry3d& wMc,
-                        const Intrinsics& k) {
+MomentSums polygon_moments(const std::vector<Eigen::Vector3d>& corners_w,
+                           const Eigen::Isometry3d& wMc, const Intrinsics& k) {
   constexpr int kParts = 50;
   std::vector<Eigen::Vector2d> outline;
   for (std::size_t i = 0; i < corners_w.size(); ++i)
@@ -71,7 +71,7 @@ Moments polygon_moments(const std::vector<Eigen::Vector3d>& corners_w, const Eig
           (1.0 - t) * corners_w[i] + t * corners_w[(i + 1) % corners_w.size()];
       outline.push_back(*project(k, wMc.inverse() * p));
     }
-  Moments moments;
+  MomentSums moments;
   for (std::size_t i = 0; i < outline.size(); ++i) {
     const Eigen::Vector2d a = outline[i];
     const Eigen::Vector2d b = outline[(i + 1) % outline.size()];
@@ -97,7 +97,7 @@ TEST(TagRendering, BlackHasTheAreaAndTheCentreOfItsFields) {
   for (const double kdu : {0.0, 0.1}) {
     const Intrinsics k = camera(900, kdu);
     const Eigen::Isometry3d wMc = in_front();
-    Moments truth;
+    MomentSums truth;
     const imaging::TagBitmap black = imaging::tag_bitmap(123);
     for (int row = 0; row < imaging::kTagFields; ++row)
       for (int column = 0; column < imaging::kTagFields; ++column) {
@@ -106,13 +106,13 @@ TEST(TagRendering, BlackHasTheAreaAndTheCentreOfItsFields) {
         for (const auto& [dx, dy] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}})
           corners.push_back(tag.wMl * Eigen::Vector3d(-0.1 + 0.025 * (column + dx),
                                                       0.1 - 0.025 * (row + dy), 0.0));
-        const Moments field = polygon_moments(corners, wMc, k);
+        const MomentSums field = polygon_moments(corners, wMc, k);
         truth.area += field.area;
         truth.first += field.first;
       }
     const auto image = imaging::grey_image(*scene.expose(wMc, k, {}, still(false)));
     const Eigen::Vector2d middle = truth.centre();
-    Moments seen;
+    MomentSums seen;
     for (int v = static_cast<int>(middle.y()) - 60; v <= middle.y() + 60; ++v)
       for (int u = static_cast<int>(middle.x()) - 60; u <= middle.x() + 60; ++u)
         seen.add((255.0 - image[static_cast<unsigned>(v)][u]) / 255.0, Eigen::Vector2d(u, v));
@@ -138,7 +138,7 @@ TEST(PatternRendering, EachDotHasItsColourItsCentreAndItsArea) {
       outline.push_back(pattern.wMl * Eigen::Vector3d(p.x(), p.y(), 0.0));
     }
     // A polygon of 40 corners has sin(2π/40)/(2π/40) of the circle's area.
-    Moments truth = polygon_moments(outline, wMc, k);
+    MomentSums truth = polygon_moments(outline, wMc, k);
     truth.area /= std::sin(2.0 * kPi / 40) / (2.0 * kPi / 40);
     const Eigen::Vector2d middle = polygon_moments(outline, wMc, k).centre();
     const auto at = [&](double u, double v) {
@@ -155,7 +155,7 @@ TEST(PatternRendering, EachDotHasItsColourItsCentreAndItsArea) {
     const int channel = dot.colour == DotColour::green || dot.colour == DotColour::blue ? 0 : 1;
     const auto level = [&](const vpRGBa& p) { return channel == 0 ? p.R : p.G; };
     const double ink = level(inside);
-    Moments seen;
+    MomentSums seen;
     const double reach = std::sqrt(truth.area / kPi) * 1.3 + 3.0;
     for (double v = std::round(middle.y() - reach); v <= middle.y() + reach; ++v)
       for (double u = std::round(middle.x() - reach); u <= middle.x() + reach; ++u)

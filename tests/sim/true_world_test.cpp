@@ -9,16 +9,16 @@
 namespace vigia::sim {
 namespace {
 
-constexpr double kSigmas = 4.5;
+constexpr double kWorldSigmas = 4.5;
 
-RobotSetup robot_setup() {
+RobotSetup robot_of_world() {
   RobotSetup setup;
   setup.zoom = ZoomCalibration(640, 480, 319.5, 239.5, {{8, 582, 0.06}, {48, 3490, 0.002}});
   return setup;
 }
 
 Simulator simulator(const DisturbanceParams& disturbances, std::uint64_t seed) {
-  return Simulator(robot_setup(), test_room(), nullptr, {2.0, 3.0, 0.0}, seed, disturbances);
+  return Simulator(robot_of_world(), test_room(), nullptr, {2.0, 3.0, 0.0}, seed, disturbances);
 }
 
 TEST(TrueWorld, LandmarksHangOffTheirPlacesByTheStatedErrors) {
@@ -39,8 +39,8 @@ TEST(TrueWorld, LandmarksHangOffTheirPlacesByTheStatedErrors) {
       ++n;
     }
   }
-  EXPECT_NEAR(off / n / (2.0 * 0.005 * 0.005), 1.0, kSigmas * std::sqrt(1.0 / n));
-  EXPECT_NEAR(turned / n / std::pow(from_deg(1.0), 2), 1.0, kSigmas * std::sqrt(2.0 / n));
+  EXPECT_NEAR(off / n / (2.0 * 0.005 * 0.005), 1.0, kWorldSigmas * std::sqrt(1.0 / n));
+  EXPECT_NEAR(turned / n / std::pow(from_deg(1.0), 2), 1.0, kWorldSigmas * std::sqrt(2.0 / n));
 }
 
 TEST(TrueWorld, AtMostOneLandmarkInSixIsMissing) {
@@ -55,7 +55,8 @@ TEST(TrueWorld, AtMostOneLandmarkInSixIsMissing) {
   }
   // One of six is missing when any of six draws says so.
   const double share = 1.0 - std::pow(0.9, 6);
-  EXPECT_NEAR(1.0 * missing / kSeeds, share, kSigmas * std::sqrt(share * (1.0 - share) / kSeeds));
+  EXPECT_NEAR(1.0 * missing / kSeeds, share,
+              kWorldSigmas * std::sqrt(share * (1.0 - share) / kSeeds));
 }
 
 TEST(TrueWorld, WithoutDisturbancesItIsTheMapAndTheSamePixels) {
@@ -64,7 +65,8 @@ TEST(TrueWorld, WithoutDisturbancesItIsTheMapAndTheSamePixels) {
   for (const Landmark& landmark : map.landmarks.all())
     EXPECT_EQ(world.true_world().landmarks.find(landmark.id)->wMl.matrix(), landmark.wMl.matrix());
   const Scene plain(map, nullptr, derive_seed(3, "scene"));
-  const auto direct = plain.expose(world.robot().camera_pose(), robot_setup().zoom.at(8), {}, {});
+  const auto direct =
+      plain.expose(world.robot().camera_pose(), robot_of_world().zoom.at(8), {}, {});
   EXPECT_TRUE(imaging::grey_image(*world.expose()) == imaging::grey_image(*direct));
   EXPECT_EQ(world.latency().ns, 0);
 }
@@ -114,7 +116,7 @@ TEST(CameraErrors, TheFocalLengthIsOffByTheStatedRms) {
     square += mean / kSeeds;
   }
   // Each seed's mean square has a relative deviation of at most √2.
-  EXPECT_NEAR(square / (0.005 * 0.005), 1.0, kSigmas * std::sqrt(2.0 / kSeeds));
+  EXPECT_NEAR(square / (0.005 * 0.005), 1.0, kWorldSigmas * std::sqrt(2.0 / kSeeds));
 }
 
 TEST(CameraErrors, ThePrincipalPointDriftsAlongTheZoom) {
@@ -146,7 +148,7 @@ TEST(CameraErrors, TheHeadSitsAskewBySmallAnglesAndMillimetres) {
     offset += error.translation().squaredNorm() / kSeeds;
   }
   // Three coordinates each; a mean square of 3n normal numbers.
-  const double tolerance = kSigmas * std::sqrt(2.0 / (3.0 * kSeeds));
+  const double tolerance = kWorldSigmas * std::sqrt(2.0 / (3.0 * kSeeds));
   EXPECT_NEAR(angle / (3.0 * std::pow(from_deg(0.25), 2)), 1.0, tolerance);
   EXPECT_NEAR(offset / (3.0 * 0.003 * 0.003), 1.0, tolerance);
 }

@@ -12,7 +12,7 @@
 namespace vigia::sim {
 namespace {
 
-constexpr double kSigmas = 4.5;
+constexpr double kSlipSigmas = 4.5;
 constexpr double kStep_m = 0.01;
 
 TEST(WheelSlip, LosesTheStatedShareOfTheWayInSlipsOfTheStatedNumberAndLength) {
@@ -42,14 +42,14 @@ TEST(WheelSlip, LosesTheStatedShareOfTheWayInSlipsOfTheStatedNumberAndLength) {
   const double driven = kSteps * kStep_m;
   // Gaps are exponential, so the slips in the way that does not slip are a Poisson number.
   const double expected = params.per_m * (driven - slipping);
-  EXPECT_NEAR(slips, expected, kSigmas * std::sqrt(expected));
+  EXPECT_NEAR(slips, expected, kSlipSigmas * std::sqrt(expected));
   const double mean_m = 0.5 * (params.least_m + params.most_m);
   const double sigma_m = (params.most_m - params.least_m) / std::sqrt(12.0);
   // A slip ends with the step in which its length is used up.
   EXPECT_NEAR(slipping / slips, mean_m + 0.5 * kStep_m,
-              kSigmas * sigma_m / std::sqrt(1.0 * slips) + 0.1 * kStep_m);
+              kSlipSigmas * sigma_m / std::sqrt(1.0 * slips) + 0.1 * kStep_m);
   EXPECT_NEAR(lost / slipping, 0.5 * (params.least_loss + params.most_loss),
-              kSigmas * 0.08 / std::sqrt(12.0) * 1.1 / std::sqrt(1.0 * slips));
+              kSlipSigmas * 0.08 / std::sqrt(12.0) * 1.1 / std::sqrt(1.0 * slips));
 }
 
 TEST(WheelSlip, TurnsTheBaseDuringASlipByASkewOfItsOwnForEach) {
@@ -76,9 +76,9 @@ TEST(WheelSlip, TurnsTheBaseDuringASlipByASkewOfItsOwnForEach) {
   }
   const double n = static_cast<double>(skews.size());
   const double sigma = params.skew_per_m;
-  EXPECT_NEAR(sum / n, 0.0, kSigmas * sigma / std::sqrt(n));
-  EXPECT_NEAR(square / n / (sigma * sigma), 1.0, kSigmas * std::sqrt(2.0 / n));
-  EXPECT_NEAR(neighbours / n / (sigma * sigma), 0.0, kSigmas / std::sqrt(n));
+  EXPECT_NEAR(sum / n, 0.0, kSlipSigmas * sigma / std::sqrt(n));
+  EXPECT_NEAR(square / n / (sigma * sigma), 1.0, kSlipSigmas * std::sqrt(2.0 / n));
+  EXPECT_NEAR(neighbours / n / (sigma * sigma), 0.0, kSlipSigmas / std::sqrt(n));
 }
 
 TEST(WheelSlip, TurnsTheBaseTheSameWayInReverse) {
@@ -111,7 +111,7 @@ TEST(WheelSlip, ScaleErrorsStayAndHaveTheStatedSpread) {
     square += std::pow(first.distance - 1.0, 2) + std::pow(first.turn - 1.0, 2);
   }
   EXPECT_NEAR(square / (2.0 * kSeeds) / (0.005 * 0.005), 1.0,
-              kSigmas * std::sqrt(2.0 / (2.0 * kSeeds)));
+              kSlipSigmas * std::sqrt(2.0 / (2.0 * kSeeds)));
 }
 
 RobotParams quiet_robot() {

@@ -1,22 +1,29 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
 namespace vigia {
 
+/// z component of the cross product of two vectors of the plane.
+inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+/// The unit vector at @p angle from x towards y, radians.
+inline Eigen::Vector2d unit_vector(double angle) {
+  return {std::cos(angle), std::sin(angle)};
+}
+
 /// Where two segments cross: fractions of the way along each.
 struct Crossing {
   double along_pq = 0.0;
   double along_ab = 0.0;
 };
-
-/// z component of the cross product of two vectors of the plane.
-inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
 
 /// Distance from a point to the segment from @p a to @p b.
 double distance_to_segment(const Eigen::Vector2d& p, const Eigen::Vector2d& a,
