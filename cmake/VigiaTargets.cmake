@@ -11,24 +11,14 @@ target_compile_options(vigia_options INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wshadow -ffp-contract=off
   $<$<BOOL:${VIGIA_WERROR}>:-Werror>)
 
-# Two thirds of a build would go into reading the same headers of other people: they are read once for
-# the modules and once for the tests. No header of vigia's is among them. `./dev lint` goes without,
-# so that a file which lacks an include of its own is found.
-set(VIGIA_COMMON_HEADERS
-  <algorithm> <array> <cmath> <filesystem> <functional> <map> <memory> <optional> <sstream> <string>
-  <variant> <vector> <Eigen/Cholesky> <Eigen/Eigenvalues> <Eigen/Geometry> <Eigen/LU>)
-
-# vigia_precompile(TARGET FIRST HEADERS…): FIRST is the first target with the same flags; it owns the
-# headers.
-function(vigia_precompile target first)
-  if(NOT VIGIA_PRECOMPILE)
-    return()
-  elseif(target STREQUAL first)
-    target_precompile_headers(${target} PRIVATE ${ARGN})
-  else()
-    target_precompile_headers(${target} REUSE_FROM ${first})
-  endif()
-endfunction()
+# The files of a target are compiled several at a time: the same headers and, what costs more, the same
+# instances of Eigen's templates are then made once for all of them. Names in their anonymous namespaces
+# must differ. `./dev lint` compiles each file alone, so that one which lacks an include of its own is
+# found.
+if(VIGIA_BATCH)
+  set(CMAKE_UNITY_BUILD ON)
+  set(CMAKE_UNITY_BUILD_BATCH_SIZE 8)
+endif()
 
 function(vigia_module name)
   cmake_parse_arguments(ARG "PIXEL_LOOPS" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
@@ -43,12 +33,9 @@ function(vigia_module name)
   target_link_libraries(vigia_${name}
     PUBLIC ${ARG_PUBLIC}
     PRIVATE $<BUILD_INTERFACE:vigia_options> ${ARG_PRIVATE})
-  set(first vigia_core)
   if(ARG_PIXEL_LOOPS)
     target_compile_options(vigia_${name} PRIVATE -fno-math-errno -fno-trapping-math)
-    set(first vigia_tracking)
   endif()
-  vigia_precompile(vigia_${name} ${first} ${VIGIA_COMMON_HEADERS})
   set_property(GLOBAL APPEND PROPERTY VIGIA_MODULES vigia_${name})
 endfunction()
 
@@ -63,7 +50,6 @@ function(vigia_test module)
   target_include_directories(test_${module} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(test_${module} PRIVATE
     VIGIA_SOURCE_DIR="${PROJECT_SOURCE_DIR}" VIGIA_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
-  vigia_precompile(test_${module} test_core ${VIGIA_COMMON_HEADERS} <gmock/gmock.h> <gtest/gtest.h>)
   gtest_discover_tests(test_${module} TEST_PREFIX ${module}. DISCOVERY_TIMEOUT 120
                        PROPERTIES ${properties})
 endfunction()
