@@ -86,6 +86,26 @@ TEST(RealDots, AllFiveDotsOfTheMovingTargetAreFollowedThroughTheSequence) {
   EXPECT_GT(sightings, 99 * 25);
 }
 
+TEST(RealDots, NoTwoTargetsOfACrowdedSequenceAreTheSameDot) {
+  VIGIA_NEEDS_PICTURES();
+  // The dots lie nearer to each other than some move from picture to picture.
+  const auto results = run("disc", numbered("cube", "image.", 4, 0, 79, 1));
+  int sightings = 0;
+  for (const PictureResult& result : results)
+    for (const PictureRow& row : result.rows) {
+      if (row.feature.status != FeatureStatus::found) continue;
+      ++sightings;
+      const Ellipse& e = row.feature.ellipse;
+      const auto doubles =
+          std::count_if(result.rows.begin(), result.rows.end(), [&](const PictureRow& other) {
+            return other.feature.status == FeatureStatus::found &&
+                   std::hypot(other.feature.ellipse.u - e.u, other.feature.ellipse.v - e.v) < 1.0;
+          });
+      EXPECT_EQ(doubles, 1) << result.image << " target " << row.target;
+    }
+  EXPECT_GT(sightings, 0);
+}
+
 TEST(RealDots, TheFourDotsOfTheTestTargetAreFound) {
   VIGIA_NEEDS_PICTURES();
   EXPECT_EQ(found(run("disc", {kPictures / "mire" / "mire.pgm"})[0]), 4);
