@@ -120,6 +120,33 @@ double contrast_of(const vpImage<unsigned char>& image, const Ellipse& ellipse) 
   return level(3.0) - level(-std::min(3.0, 0.5 * ellipse.b));
 }
 
+// The share of the outline across which the grey level steps as @p contrast says. Sites hold on to
+// the grain of a surface where the outline has left the edge; the step is not there.
+double stepping_share(const vpImage<unsigned char>& image, const Ellipse& ellipse,
+                      double contrast) {
+  constexpr int kSamples = 64;
+  constexpr double kLeastStep = 0.3;  // of the contrast: light may fall off along the outline
+  const auto inside_image = [&](const Eigen::Vector2d& p) {
+    return p.x() >= 0.0 && p.y() >= 0.0 && p.x() <= image.getWidth() - 1.0 &&
+           p.y() <= image.getHeight() - 1.0;
+  };
+  const auto level = [&](const Eigen::Vector2d& p) {
+    return static_cast<double>(
+        image[static_cast<unsigned>(std::lround(p.y()))][std::lround(p.x())]);
+  };
+  int seen = 0;
+  int steps = 0;
+  for (int k = 0; k < kSamples; ++k) {
+    const double t = 2.0 * kPi * k / kSamples;
+    const Eigen::Vector2d outer = outline_point(ellipse, t, 3.0);
+    const Eigen::Vector2d inner = outline_point(ellipse, t, -std::min(3.0, 0.5 * ellipse.b));
+    if (!inside_image(outer) || !inside_image(inner)) continue;
+    ++seen;
+    if ((level(outer) - level(inner)) / contrast >= kLeastStep) ++steps;
+  }
+  return seen > 0 ? static_cast<double>(steps) / seen : 0.0;
+}
+
 }  // namespace
 
 class MovingEdgeTracker::State {
@@ -218,6 +245,7 @@ EllipseFeature MovingEdgeTracker::State::follow(Canvas& canvas, const EllipseSha
   auto measured = measure(crop_, local);
   if (!measured) return lost_ellipse(FeatureStatus::not_found);
   const double contrast = contrast_of(crop_, measured->ellipse);
+  const double stepping = stepping_share(crop_, measured->ellipse, contrast);
   measured->ellipse.u += origin.x();
   measured->ellipse.v += origin.y();
 
@@ -231,7 +259,8 @@ EllipseFeature MovingEdgeTracker::State::follow(Canvas& canvas, const EllipseSha
     return lost_ellipse(FeatureStatus::wrong_object);
   if (std::abs(contrast) < parameters_.finder.min_contrast)
     return lost_ellipse(FeatureStatus::low_contrast);
-  if (measured->held < parameters_.min_good_sites) return lost_ellipse(FeatureStatus::occluded);
+  if (std::min(measured->held, stepping) < parameters_.min_good_sites)
+    return lost_ellipse(FeatureStatus::occluded);
   tracking_ = true;
   shape_ = shape;
   motion_.setZero();

@@ -1,6 +1,7 @@
 #include "vigia/tracking/picture_run.hpp"
 
 #include "csv_text.hpp"
+#include "lost_feature.hpp"
 #include "overlay_pen.hpp"
 
 #include <algorithm>
@@ -13,6 +14,19 @@
 #include "vigia/tracking/moving_edge_tracker.hpp"
 
 namespace vigia::tracking {
+namespace {
+
+double distance(const Ellipse& a, const Ellipse& b) {
+  return std::hypot(a.u - b.u, a.v - b.v);
+}
+
+bool same_disc(const EllipseFeature& a, const EllipseFeature& b) {
+  return a.status == FeatureStatus::found && b.status == FeatureStatus::found &&
+         distance(a.ellipse, b.ellipse) < 0.5 * std::min(a.ellipse.b, b.ellipse.b);
+}
+
+}  // namespace
+
 std::unique_ptr<EllipseTracker> make_picture_tracker(const std::string& name) {
   DiscTrackerParameters disc;
   disc.polarity = Polarity::either;
@@ -49,12 +63,46 @@ std::vector<PictureRow> PictureRun::find(const std::filesystem::path& name,
   targets_.clear();
   std::vector<PictureRow> rows;
   for (const EllipseFeature& feature : finder_->find_all(canvas)) {
-    Target target{++numbers_, make_picture_tracker(tracker_)};
+    Target target{++numbers_, make_picture_tracker(tracker_), feature.ellipse};
     target.tracker->start(canvas, feature.ellipse);
     rows.push_back({name, target.number, feature});
     targets_.push_back(std::move(target));
   }
+  found_anew_ = targets_.size();
   return rows;
+}
+
+std::vector<PictureRow> PictureRun::follow(const std::filesystem::path& name,
+                                           imaging::Canvas& canvas) {
+  std::vector<PictureRow> rows;
+  for (Target& target : targets_)
+    rows.push_back({name, target.number, target.tracker->track(canvas)});
+  give_up_doubles(rows);
+  return rows;
+}
+
+void PictureRun::give_up_doubles(std::vector<PictureRow>& rows) {
+  // Of equal ways the first target's counts as the shorter.
+  const auto nearer = [&](std::size_t i, std::size_t j) {
+    const double way_i = distance(rows[i].feature.ellipse, targets_[i].last);
+    const double way_j = distance(rows[j].feature.ellipse, targets_[j].last);
+    return way_i < way_j || (way_i == way_j && i < j);
+  };
+  std::vector<bool> double_of_another(rows.size(), false);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (std::size_t j = 0; j < rows.size(); ++j)
+      if (i != j && same_disc(rows[i].feature, rows[j].feature) && nearer(j, i))
+        double_of_another[i] = true;
+  std::vector<Target> kept;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (double_of_another[i]) {
+      rows[i].feature = lost_ellipse(FeatureStatus::wrong_object);
+      continue;
+    }
+    if (rows[i].feature.status == FeatureStatus::found) targets_[i].last = rows[i].feature.ellipse;
+    kept.push_back(std::move(targets_[i]));
+  }
+  targets_ = std::move(kept);
 }
 
 PictureResult PictureRun::next(const std::filesystem::path& name,
@@ -65,13 +113,11 @@ PictureResult PictureRun::next(const std::filesystem::path& name,
   const bool same_size = picture.width() == width_ && picture.height() == height_;
   width_ = picture.width();
   height_ = picture.height();
-  if (same_size)
-    for (Target& target : targets_)
-      result.rows.push_back({name, target.number, target.tracker->track(canvas)});
+  if (same_size) result.rows = follow(name, canvas);
   const auto found = std::count_if(result.rows.begin(), result.rows.end(), [](const auto& row) {
     return row.feature.status == FeatureStatus::found;
   });
-  if (found == 0 || 2 * static_cast<std::size_t>(found) < result.rows.size())
+  if (found == 0 || 2 * static_cast<std::size_t>(found) < found_anew_)
     result.rows = find(name, canvas);
   return result;
 }

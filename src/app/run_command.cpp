@@ -71,13 +71,21 @@ int run(const RunOptions& options) {
   return outcome == mission::Outcome::arrived ? 0 : 1;
 }
 
+/// CLI11 alone would wrap a negative seed and cut one that is too large.
+std::string seed_mistake(const std::string& text) {
+  const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+  if (digits && text.size() <= 19 && std::stoull(text) <= 9'000'000'000'000'000) return {};
+  return fmt::format("found '{}', must be a whole number in [0, 9e+15]", text);
+}
+
 }  // namespace
 
 void add_run(CLI::App& app, int& status) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand("run", "Run one mission and write its run folder");
   command->add_option("mission", options->mission, "Mission file (YAML)")->required();
-  command->add_option("--seed", options->seed, "Seed of every random stream");
+  command->add_option("--seed", options->seed, "Seed of every random stream")
+      ->check(CLI::Validator(seed_mistake, ""));
   command->add_option("--out", options->out, "Run folder (default runs/<mission>-<seed>)");
   command
       ->add_option("--set", options->overrides,

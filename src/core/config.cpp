@@ -47,6 +47,19 @@ void take_version(ConfigNode& root) {
                                          ", must be 1, the version that this program reads");
 }
 
+/// A map in place of a file's name is no file: what it extends would be passed over.
+void refuse_below_the_top(const ConfigNode& node) {
+  for (const auto& item : node.items) refuse_below_the_top(*item);
+  for (const auto& [key, value] : node.entries) {
+    if (key == "version" || key == "extends")
+      throw InputError(value->key_where,
+                       "'" + key +
+                           "' belongs to the top of a file, not into a map "
+                           "within one; write the name of a file instead of the map");
+    refuse_below_the_top(*value);
+  }
+}
+
 std::string name_cycle(const std::vector<std::filesystem::path>& chain,
                        const std::filesystem::path& again) {
   auto first = std::find(chain.begin(), chain.end(), again);
@@ -85,6 +98,7 @@ NodePtr resolve(const std::string& text, const std::string& name,
     throw InputError(root->where, "the top must be a map of keys and values");
   take_version(*root);
   const NodePtr extends = take(*root, "extends");
+  refuse_below_the_top(*root);
   return extends ? extend(root, *extends, name, chain) : root;
 }
 

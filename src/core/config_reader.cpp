@@ -211,8 +211,16 @@ const ConfigNode* MapReader::ask(const std::string& key) const {
 
 const ConfigNode& MapReader::require(const std::string& key) const {
   const ConfigNode* value = ask(key);
-  if (value == nullptr) throw InputError(where(), path(key) + ": the key is missing");
+  if (value == nullptr) throw missing(key);
   return *value;
+}
+
+InputError MapReader::missing(const std::string& key) const {
+  constexpr std::size_t kSlips = 2;
+  for (const auto& [name, value] : node_->entries)
+    if (asked_.count(name) == 0 && edit_distance(name, key) <= kSlips)
+      return {value->key_where, path(key) + ": the key is missing; found '" + name + "'"};
+  return {where(), path(key) + ": the key is missing"};
 }
 
 void MapReader::resolve(const std::string& key, std::shared_ptr<ConfigNode> value) {
@@ -266,6 +274,14 @@ bool MapReader::boolean(const std::string& key, bool fallback) {
 
 std::string MapReader::text(const std::string& key) {
   return read_text(require(key), path(key));
+}
+
+std::string MapReader::folder_name(const std::string& key) {
+  const ConfigNode& value = require(key);
+  const std::string& name = read_text(value, path(key));
+  if (name.empty() || name == "." || name == ".." || name.find('/') != std::string::npos)
+    ValueError(path(key)).fail(value, "must be a name that a folder can have: not empty, no '/'");
+  return name;
 }
 
 std::string MapReader::text(const std::string& key, const std::string& fallback) {

@@ -124,7 +124,7 @@ Campaign read_campaign(const std::filesystem::path& file,
                        const std::vector<std::string>& overrides) {
   MapReader reader(load_config(file), "campaign");
   Campaign campaign;
-  campaign.name = reader.text("name");
+  campaign.name = reader.folder_name("name");
   const auto mission = file.parent_path() / reader.text("mission");
   MapReader seeds = reader.map("seeds");
   campaign.first_seed = static_cast<std::uint64_t>(seeds.integer("first", {0, 1e9}, 1));

@@ -58,7 +58,8 @@ EkfLocalizer::EkfLocalizer(LandmarkMap map, const HeadGeometry& geometry, const 
       params_(params),
       plan_(std::move(plan)),
       gate_(chi_square_quantile(params.gate_probability, kDof)),
-      nis_limits_(static_cast<std::size_t>(kPointsDof * params.nis_looks) + 1) {
+      nis_limits_(static_cast<std::size_t>(kPointsDof * params.nis_looks) + 1),
+      mean_speed_(params.odometry) {
   for (std::size_t dof = 1; dof < nis_limits_.size(); ++dof)
     nis_limits_[dof] = chi_square_quantile(1.0 - params.nis_probability, static_cast<double>(dof));
   reset(Stamp{}, Prior{});
@@ -67,6 +68,7 @@ EkfLocalizer::EkfLocalizer(LandmarkMap map, const HeadGeometry& geometry, const 
 void EkfLocalizer::reset(Stamp stamp, const Prior& prior) {
   base_ = initial_state(stamp, prior, params_.sensor);
   events_.clear();
+  mean_speed_.reset();
   horizon_ = stamp;
   rejections_ = 0;
   rejected_looks_.clear();
@@ -83,7 +85,7 @@ void EkfLocalizer::lose() {
 void EkfLocalizer::predict(const OdometryIncrement& increment) {
   assert(std::isfinite(increment.rot1 + increment.trans + increment.rot2));
   const std::vector<EkfInput> ahead = drop_extrapolated();
-  append(increment);
+  append(Motion{increment, mean_speed_.even(increment)});
   for (const EkfInput& fix : ahead) {
     const std::vector<Event> later = roll_back(sensor_of(fix)->stamp);
     append(fix);
@@ -150,19 +152,19 @@ EkfLocalizer::Match EkfLocalizer::match(const PointsObservation& observation,
 
 void EkfLocalizer::append(const EkfInput& input, bool extrapolated) {
   Event event{input, extrapolated, state(), events_.empty() ? Window{} : events_.back().window};
-  if (const auto* increment = std::get_if<OdometryIncrement>(&input))
-    move_by(*increment, event);
+  if (const auto* motion = std::get_if<Motion>(&input))
+    move_by(*motion, event);
   else
     fuse(*sensor_of(input), event);
   assert(event.after.mean.allFinite() && event.after.covariance.allFinite());
   events_.push_back(std::move(event));
 }
 
-void EkfLocalizer::move_by(const OdometryIncrement& increment, Event& event) const {
-  event.after = propagate(event.after, increment, params_.odometry);
+void EkfLocalizer::move_by(const Motion& motion, Event& event) const {
+  event.after = propagate(event.after, motion, params_.odometry);
   Window& window = event.window;
   if (window.events > 0) ++window.events;
-  if ((increment.to - window.last_image).seconds() > kLookPause) window = {};
+  if ((motion.increment.to - window.last_image).seconds() > kLookPause) window = {};
 }
 
 void EkfLocalizer::fuse(const SensorSnapshot& sensor, Event& event) const {
@@ -241,31 +243,33 @@ std::vector<EkfLocalizer::Event> EkfLocalizer::roll_back(Stamp stamp) {
     if (state().stamp < stamp) extrapolate(stamp);
     return later;
   }
-  if (auto* increment = std::get_if<OdometryIncrement>(&later.front().input)) {
-    const OdometryIncrement whole = *increment;
-    if (whole.from < stamp) {
-      const double f = fraction_at(whole, stamp);
-      OdometryIncrement before = first_part(whole, f);
-      before.to = stamp;
+  if (auto* motion = std::get_if<Motion>(&later.front().input)) {
+    const Motion whole = *motion;
+    if (whole.increment.from < stamp) {
+      const double f = fraction_at(whole.increment, stamp);
+      Motion before = first_part(whole, f);
+      before.increment.to = stamp;
       append(before, later.front().extrapolated);
-      *increment = second_part(whole, f);
-      increment->from = stamp;
+      *motion = second_part(whole, f);
+      motion->increment.from = stamp;
     }
   }
   return later;
 }
 
 void EkfLocalizer::extrapolate(Stamp stamp) {
-  OdometryIncrement motion{state().stamp, stamp, 0.0, 0.0, 0.0};
+  Motion motion;
+  motion.increment = motion.even = {state().stamp, stamp, 0.0, 0.0, 0.0};
   const auto last = std::find_if(events_.rbegin(), events_.rend(), [](const Event& event) {
-    return std::holds_alternative<OdometryIncrement>(event.input);
+    return std::holds_alternative<Motion>(event.input);
   });
   if (last != events_.rend()) {
-    const auto& u = std::get<OdometryIncrement>(last->input);
+    const auto& before = std::get<Motion>(last->input);
+    const OdometryIncrement& u = before.increment;
     if (u.from < u.to)
-      motion = first_part(u, (stamp - motion.from).seconds() / (u.to - u.from).seconds());
-    motion.from = state().stamp;
-    motion.to = stamp;
+      motion = first_part(before, (stamp - state().stamp).seconds() / (u.to - u.from).seconds());
+    motion.increment.from = state().stamp;
+    motion.increment.to = stamp;
   }
   append(motion, true);
 }

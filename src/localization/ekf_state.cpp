@@ -64,12 +64,12 @@ Matrix6 propagate_covariance(const Matrix6& covariance, const Pose2& pose,
   return moved;
 }
 
-EkfState propagate(const EkfState& state, const OdometryIncrement& u, const OdometryNoise& noise) {
+EkfState propagate(const EkfState& state, const Motion& motion, const OdometryNoise& noise) {
   EkfState moved = state;
-  moved.stamp = u.to;
-  moved.mean.head<3>() = move(state.pose(), u).vector();
-  moved.covariance =
-      propagate_covariance(state.covariance, state.pose(), u, control_covariance(u, noise));
+  moved.stamp = motion.increment.to;
+  moved.mean.head<3>() = move(state.pose(), motion.increment).vector();
+  moved.covariance = propagate_covariance(state.covariance, state.pose(), motion.increment,
+                                          control_covariance(motion.even, noise));
   return moved;
 }
 
@@ -111,6 +111,14 @@ OdometryIncrement second_part(const OdometryIncrement& u, double f) {
   OdometryIncrement rest = part(u, f, 1.0);
   rest.to = u.to;
   return rest;
+}
+
+Motion first_part(const Motion& motion, double f) {
+  return {first_part(motion.increment, f), first_part(motion.even, f)};
+}
+
+Motion second_part(const Motion& motion, double f) {
+  return {second_part(motion.increment, f), second_part(motion.even, f)};
 }
 
 }  // namespace vigia::localization

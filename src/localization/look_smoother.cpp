@@ -31,13 +31,14 @@ Vector6 wrapped(Vector6 difference) {
 }
 
 /// Moves @p state by an increment linearised at @p at.
-bool pass(const OdometryIncrement& u, const Vector6& at, const LookModel& model, EkfState& state,
+bool pass(const Motion& motion, const Vector6& at, const LookModel& model, EkfState& state,
           Linearised& about) {
+  const OdometryIncrement& u = motion.increment;
   const Pose2 pose = Pose2::from_vector(at.head<3>());
   about.dx_dx = move_jacobian_pose(pose, u);
   state.mean.head<3>() = move(pose, u).vector() + about.dx_dx * wrapped(state.mean - at).head<3>();
-  state.covariance =
-      propagate_covariance(state.covariance, pose, u, control_covariance(u, model.odometry));
+  state.covariance = propagate_covariance(state.covariance, pose, u,
+                                          control_covariance(motion.even, model.odometry));
   state.stamp = u.to;
   return true;
 }

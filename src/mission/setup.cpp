@@ -114,7 +114,7 @@ MissionSetup load_mission(const std::filesystem::path& file,
   MapReader mission(root, "mission");
 
   MissionSetup setup;
-  setup.name = mission.text("name");
+  setup.name = mission.folder_name("name");
 
   MapReader world = mission.map_or_file("world");
   setup.world = read_world_map(world);

@@ -169,6 +169,14 @@ INSTANTIATE_TEST_SUITE_P(
                 "m.yaml:2:10: planner: found '3', must be a map of keys and values"},
         Mistake{"version: 1\nplanner:\n  late: true\n",
                 "m.yaml:2:1: planner.limit_m: the key is missing"},
+        Mistake{"version: 1\nplanner:\n  limti_m: 0.1\n",
+                "m.yaml:3:3: planner.limit_m: the key is missing; found 'limti_m'"},
+        Mistake{"version: 1\nworld: {extends: w.yaml, a: 1}\n",
+                "m.yaml:2:9: 'extends' belongs to the top of a file, not into a map within one; "
+                "write the name of a file instead of the map"},
+        Mistake{"version: 1\nvias: [{version: 1, x_m: 1}]\n",
+                "m.yaml:2:9: 'version' belongs to the top of a file, not into a map within one; "
+                "write the name of a file instead of the map"},
         Mistake{"version: 1\nplanner:\n  limit_m: 0.1\n  limt_m: 0.1\n",
                 "m.yaml:4:3: unknown key 'limt_m' in planner; did you mean 'limit_m'? (known: "
                 "late, limit_m)"},
@@ -187,6 +195,19 @@ INSTANTIATE_TEST_SUITE_P(
                 "m.yaml:2:8: world: found the text '', must be a map or the name of a file"},
         Mistake{"version: 1\nworld: [1]\n",
                 "m.yaml:2:8: world: found a list of 1, must be a map of keys and values"}));
+
+TEST(ConfigMistake, ANameThatNoFolderCanHaveIsRefused) {
+  for (const char* name : {"''", "../../x", "..", "/tmp/x"}) {
+    const std::string message = input_error([name] {
+      MapReader(parse_config(std::string("version: 1\nname: ") + name + "\n", "m.yaml"), "mission")
+          .folder_name("name");
+    });
+    EXPECT_NE(message.find("m.yaml:2:7: mission.name: found "), std::string::npos) << message;
+    EXPECT_NE(message.find("must be a name that a folder can have: not empty, no '/'"),
+              std::string::npos)
+        << message;
+  }
+}
 
 TEST(ConfigMistake, AnUnknownKeyComesWithANearOneAndAllKnownOnes) {
   EXPECT_EQ(input_error([] { read_everything("version: 1\nsped_m_s: 3\n"); }),

@@ -127,6 +127,13 @@ TEST(EkfConsistency, IsConsistentAndAtTheBoundWithBothPartsOfTheReadingError) {
   expect_consistent(run_campaign(noise, matched(noise)));
 }
 
+// 5 mm of error on the 12 mm of a tick.
+TEST(EkfConsistency, StaysConsistentWhenHalfOfAnIncrementIsNoise) {
+  DriveNoise noise;
+  noise.odometry.trans_per_sqrt_m = 0.05;
+  expect_consistent(run_campaign(noise, matched(noise)));
+}
+
 TEST(EkfConsistency, StaysConsistentWithTheDefaultFloors) {
   const DriveNoise noise;
   EkfParams params = matched(noise);

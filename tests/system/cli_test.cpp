@@ -63,6 +63,15 @@ TEST_F(Program, ReportsAMissionThatDidNotArriveWithStatusOneAndAWholeRunFolder) 
   EXPECT_EQ(summary["outcome"], "timeout");
 }
 
+TEST_F(Program, RefusesASeedThatNoMissionFileCouldHold) {
+  for (const std::string seed : {"-1", "1.5", "9000000000000001", "99999999999999999999"}) {
+    const auto result = vigia(short_run(dir_.path() / "run") + " --seed " + seed);
+    EXPECT_EQ(result.status, 2) << seed;
+    EXPECT_THAT(result.err, HasSubstr("--seed: found '" + seed + "', must be a whole number in"));
+    EXPECT_FALSE(fs::exists(dir_.path() / "run"));
+  }
+}
+
 TEST_F(Program, PrintsTheSummaryAndNothingElseOnStdoutWithJson) {
   const auto result = vigia(short_run(dir_.path() / "run") + " --json");
   EXPECT_EQ(nlohmann::json::parse(result.out)["mission"], "armingol-room");

@@ -86,6 +86,52 @@ TEST(RealDots, AllFiveDotsOfTheMovingTargetAreFollowedThroughTheSequence) {
   EXPECT_GT(sightings, 99 * 25);
 }
 
+TEST(RealDots, WhatTheMovingEdgesFindLiesOnADot) {
+  VIGIA_NEEDS_PICTURES();
+  const auto files = numbered("mire-2", "image.", 4, 1, 500, 1);
+  const auto edges = run("ellipse", files);
+  const auto discs = run("disc", files);
+  int sightings = 0;
+  int beside = 0;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (found(discs[i]) < 5) continue;  // of a dot that is not there nothing can be said
+    for (const PictureRow& row : edges[i].rows) {
+      if (row.feature.status != FeatureStatus::found) continue;
+      ++sightings;
+      const Ellipse& e = row.feature.ellipse;
+      const bool on_a_dot =
+          std::any_of(discs[i].rows.begin(), discs[i].rows.end(), [&](const PictureRow& disc) {
+            const Ellipse& d = disc.feature.ellipse;
+            return disc.feature.status == FeatureStatus::found &&
+                   std::hypot(d.u - e.u, d.v - e.v) < 3.0 && std::abs(d.a - e.a) < 0.15 * d.a + 1.0;
+          });
+      beside += on_a_dot ? 0 : 1;
+    }
+  }
+  EXPECT_GT(sightings, 1000);
+  EXPECT_LE(beside, sightings / 100);
+}
+
+TEST(RealDots, NoTwoTargetsOfACrowdedSequenceAreTheSameDot) {
+  VIGIA_NEEDS_PICTURES();
+  // The dots lie nearer to each other than some move from picture to picture.
+  const auto results = run("disc", numbered("cube", "image.", 4, 0, 79, 1));
+  int sightings = 0;
+  for (const PictureResult& result : results)
+    for (const PictureRow& row : result.rows) {
+      if (row.feature.status != FeatureStatus::found) continue;
+      ++sightings;
+      const Ellipse& e = row.feature.ellipse;
+      const auto doubles =
+          std::count_if(result.rows.begin(), result.rows.end(), [&](const PictureRow& other) {
+            return other.feature.status == FeatureStatus::found &&
+                   std::hypot(other.feature.ellipse.u - e.u, other.feature.ellipse.v - e.v) < 1.0;
+          });
+      EXPECT_EQ(doubles, 1) << result.image << " target " << row.target;
+    }
+  EXPECT_GT(sightings, 0);
+}
+
 TEST(RealDots, TheFourDotsOfTheTestTargetAreFound) {
   VIGIA_NEEDS_PICTURES();
   EXPECT_EQ(found(run("disc", {kPictures / "mire" / "mire.pgm"})[0]), 4);

@@ -79,6 +79,8 @@ class MapReader {
   std::int64_t integer(const std::string& key, Range range, std::int64_t fallback);
   bool boolean(const std::string& key, bool fallback);
   std::string text(const std::string& key);
+  /// A text of which a folder's name is made.
+  std::string folder_name(const std::string& key);
   std::string text(const std::string& key, const std::string& fallback);
   /// A text with line breaks given in place, or the name of a file (relative to the file in which
   /// the value was written) whose content takes the place of its name in the tree; nothing for
@@ -124,6 +126,7 @@ class MapReader {
   const ConfigNode* find(const std::string& key) const;
   const ConfigNode* ask(const std::string& key) const;
   const ConfigNode& require(const std::string& key) const;
+  InputError missing(const std::string& key) const;
   void resolve(const std::string& key, std::shared_ptr<ConfigNode> value);
 
   std::shared_ptr<ConfigNode> node_;

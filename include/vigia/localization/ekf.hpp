@@ -10,6 +10,7 @@
 #include "vigia/core/floor_plan.hpp"
 #include "vigia/localization/ekf_state.hpp"
 #include "vigia/localization/localizer.hpp"
+#include "vigia/localization/mean_speed.hpp"
 
 namespace vigia::localization {
 
@@ -108,7 +109,7 @@ class EkfLocalizer final : public Localizer {
   Match match(const EllipseObservation& observation, const EkfState& at) const;
   Match match(const PointsObservation& observation, const EkfState& at) const;
   void append(const EkfInput& input, bool extrapolated = false);
-  void move_by(const OdometryIncrement& increment, Event& event) const;
+  void move_by(const Motion& motion, Event& event) const;
   void fuse(const SensorSnapshot& sensor, Event& event) const;
   std::vector<const EkfInput*> inputs_of_look(const Event& event) const;
   std::vector<Vector6> guess_of_look(const Event& event) const;
@@ -129,6 +130,7 @@ class EkfLocalizer final : public Localizer {
   double gate_;
   std::vector<double> nis_limits_;  ///< by the degrees of freedom of the sum
 
+  MeanSpeed mean_speed_;
   EkfState base_;             ///< before the first of events_
   std::deque<Event> events_;  ///< in order of time
   Stamp horizon_;             ///< what is older comes too late

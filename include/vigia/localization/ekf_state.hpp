@@ -50,8 +50,14 @@ struct PointsFix {
   std::vector<SeenPoint> points;
 };
 
+/// An increment, and the one whose control_covariance() is that of its error.
+struct Motion {
+  OdometryIncrement increment;
+  OdometryIncrement even;
+};
+
 /// What moves the filter on.
-using EkfInput = std::variant<OdometryIncrement, DiscFix, PointsFix>;
+using EkfInput = std::variant<Motion, DiscFix, PointsFix>;
 
 /// The snapshot of an image; nullptr for an increment.
 const SensorSnapshot* sensor_of(const EkfInput& input);
@@ -69,8 +75,8 @@ Eigen::Matrix3d look_covariance(const SensorNoise& noise);
 Matrix6 propagate_covariance(const Matrix6& covariance, const Pose2& pose,
                              const OdometryIncrement& u, const Eigen::Matrix3d& control_covariance);
 
-/// Moves the state by an odometry increment.
-EkfState propagate(const EkfState& state, const OdometryIncrement& u, const OdometryNoise& noise);
+/// Moves the state on.
+EkfState propagate(const EkfState& state, const Motion& motion, const OdometryNoise& noise);
 
 /// ∂z/∂state of a predicted disc.
 Matrix36 state_jacobian(const DiscMeasurement& predicted);
@@ -95,5 +101,7 @@ Eigen::Matrix<double, 6, 3> kalman_gain(const Matrix6& covariance, const Matrix3
 /// in the first part: extrapolation.
 OdometryIncrement first_part(const OdometryIncrement& u, double f);
 OdometryIncrement second_part(const OdometryIncrement& u, double f);
+Motion first_part(const Motion& motion, double f);
+Motion second_part(const Motion& motion, double f);
 
 }  // namespace vigia::localization

@@ -14,7 +14,8 @@ struct MovingEdgeTrackerParameters {
   double sample_step_px = 4.0;  ///< distance of the sites along the outline
   unsigned mask_size = 5;       ///< of the edge operator, px
   double threshold = 1500.0;    ///< ViSP's likelihood threshold of an edge
-  /// Share of the sites that must hold on to the outline; fewer mean occlusion.
+  /// Share of the sites that must hold on to the outline, and of the outline that must be a step of
+  /// the grey level; less means occlusion.
   double min_good_sites = 0.75;
   /// Smallest share of the outline inside the image; 1 refuses ellipses that the border cuts. (An
   /// arc tells centre and axes poorly, and the covariance does not say how poorly.)

@@ -33,9 +33,10 @@ std::unique_ptr<EllipseTracker> make_picture_tracker(const std::string& name);
 
 /// Follows every disc through a sequence of pictures. In the first picture each disc is found
 /// without prediction; then each is tracked. A target that is lost keeps its number and is tried
-/// again in the next picture, with what its last sight predicts. When the pictures change their
-/// size, or more than half of the targets are lost (another scene), the discs are found anew and
-/// numbered on.
+/// again in the next picture, with what its last sight predicts. Where two targets come to the same
+/// disc, the one that came from farther away has the wrong object and is given up. When the
+/// pictures change their size, or more than half of the targets are lost or given up (another
+/// scene), the discs are found anew and numbered on.
 class PictureRun {
  public:
   /// Throws InputError when there is no such tracker.
@@ -47,14 +48,18 @@ class PictureRun {
   struct Target {
     int number;
     std::unique_ptr<EllipseTracker> tracker;
+    Ellipse last;  ///< as it was last found
   };
 
   std::vector<PictureRow> find(const std::filesystem::path& name, imaging::Canvas& canvas);
+  std::vector<PictureRow> follow(const std::filesystem::path& name, imaging::Canvas& canvas);
+  void give_up_doubles(std::vector<PictureRow>& rows);
 
   std::string tracker_;
   std::unique_ptr<EllipseTracker> finder_;
   std::vector<Target> targets_;
   int numbers_ = 0;
+  std::size_t found_anew_ = 0;  ///< how many discs the last search found
   int width_ = 0;
   int height_ = 0;
 };
