@@ -6,7 +6,7 @@ namespace vigia::localization {
 namespace {
 
 /// The speed is averaged until the distance is known to this share of it …
-constexpr double kKnown = 0.1;
+constexpr double kKnown = 0.03;
 /// … but over no longer than this (s), in which the base may have come to another speed.
 constexpr double kLongest = 1.2;
 
