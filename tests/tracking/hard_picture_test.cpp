@@ -153,6 +153,21 @@ TEST_P(HardPictures, TheEllipseIsFoundInStrongNoise) {
   }
 }
 
+TEST_P(HardPictures, TheEllipseIsFoundWhereTheLightFallsOffToTwoFifths) {
+  const vpImage<unsigned char> picture = grey_picture(kEllipse);
+  const double width = picture.getWidth() - 1.0;
+  const double height = picture.getHeight() - 1.0;
+  const auto to_right = [&](double u, double, double g) { return g * (1.0 - 0.6 * u / width); };
+  const auto to_left = [&](double u, double, double g) { return g * (0.4 + 0.6 * u / width); };
+  const auto to_bottom = [&](double, double v, double g) { return g * (1.0 - 0.6 * v / height); };
+  for (const auto& light :
+       {altered(picture, to_right), altered(picture, to_left), altered(picture, to_bottom)}) {
+    const auto features = find_in(light, GetParam());
+    ASSERT_EQ(features.size(), 1U);
+    EXPECT_TRUE(is_the_ellipse(features[0]));
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, HardPictures, ::testing::Values("disc", "ellipse", "correlation"),
                          [](const auto& test) { return std::string(test.param); });
 
