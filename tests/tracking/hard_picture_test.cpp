@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
 
 #include "vigia/tracking/picture_run.hpp"
 
@@ -18,6 +19,7 @@ namespace fs = std::filesystem;
 
 const fs::path kStored = "/usr/share/visp-images-data/ViSP-images";
 const fs::path kEllipse = kStored / "ellipse" / "ellipse.pgm";
+const fs::path kGrid = kStored / "calibration" / "grid36-01.pgm";
 
 std::vector<EllipseFeature> find_in(const vpImage<unsigned char>& picture,
                                     const std::string& tracker) {
@@ -166,6 +168,14 @@ TEST_P(HardPictures, TheEllipseIsFoundWhereTheLightFallsOffToTwoFifths) {
     ASSERT_EQ(features.size(), 1U);
     EXPECT_TRUE(is_the_ellipse(features[0]));
   }
+}
+
+TEST_P(HardPictures, TheCirclesOfTheGridAreFoundInABlurredPicture) {
+  vpImage<unsigned char> picture = grey_picture(kGrid);
+  cv::Mat whole(static_cast<int>(picture.getHeight()), static_cast<int>(picture.getWidth()), CV_8U,
+                picture.bitmap);
+  cv::GaussianBlur(whole, whole, cv::Size(), 2.5);
+  EXPECT_EQ(find_in(picture, GetParam()).size(), 36U);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, HardPictures, ::testing::Values("disc", "ellipse", "correlation"),
