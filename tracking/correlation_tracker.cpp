@@ -3,6 +3,7 @@
 #include "disc_finder.hpp"
 #include "disc_template.hpp"
 #include "lost_feature.hpp"
+#include "noise_smoothing.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -59,6 +60,7 @@ class CorrelationTracker::State {
                       const EllipseShape& start, double blur) const;
   EllipseFeature judge(const TemplateMatch& match, const EdgeFit& outline, const Gate* gate,
                        const Window& frame) const;
+  double noise_inflation(const TemplateMatch& match, const EdgeFit& outline) const;
   void keep(const EllipseShape& shape);
 
   CorrelationTrackerParameters parameters_;
@@ -112,6 +114,16 @@ void CorrelationTracker::State::keep(const EllipseShape& shape) {
   motion_.setZero();
 }
 
+// Strong noise is cut off at 0 and 255: the flat parts of the template are then calmer than the
+// edge, and it's the edge that tells centre and axes.
+double CorrelationTracker::State::noise_inflation(const TemplateMatch& match,
+                                                  const EdgeFit& outline) const {
+  constexpr double kChance = 1.5;  // of two estimates of one variance
+  if (smoothing_for(outline.noise, parameters_.finder.min_contrast) == 0.0) return 1.0;
+  const double ratio = std::pow(outline.noise / match.noise, 2);
+  return ratio > kChance ? ratio : 1.0;
+}
+
 EllipseFeature CorrelationTracker::State::judge(const TemplateMatch& match, const EdgeFit& outline,
                                                 const Gate* gate, const Window& frame) const {
   const double score = correlation_score(sign_ * match.correlation);
@@ -140,7 +152,7 @@ EllipseFeature CorrelationTracker::State::judge(const TemplateMatch& match, cons
   feature.status = FeatureStatus::found;
   const EllipseEstimate estimate = estimate_of(match.shape, match.covariance);
   feature.ellipse = estimate.ellipse;
-  feature.covariance = estimate.covariance;
+  feature.covariance = noise_inflation(match, outline) * estimate.covariance;
   feature.contrast = match.contrast;
   feature.score = score;
   return feature;

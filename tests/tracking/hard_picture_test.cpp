@@ -143,6 +143,13 @@ TEST_P(NoisyCentres, AreOffAsTheirCovarianceSays) {
   }
 }
 
+TEST_P(NoisyCentres, AreNotMuchFurtherOffWhereHalfTheNoiseIsCutOff) {
+  constexpr int kPictures = 100;
+  const Pulls pulls = pulls_of(GetParam(), 45.0, 250.0, 30.0, kPictures);
+  ASSERT_EQ(pulls.found, kPictures);
+  EXPECT_LT(pulls.mean_square, 1.6);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, NoisyCentres, ::testing::Values("disc", "correlation"),
                          [](const auto& test) { return std::string(test.param); });
 
