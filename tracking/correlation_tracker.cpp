@@ -3,6 +3,7 @@
 #include "disc_finder.hpp"
 #include "disc_template.hpp"
 #include "lost_feature.hpp"
+#include "noise_smoothing.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -55,6 +56,12 @@ class CorrelationTracker::State {
                         const std::vector<double>& scales);
   EllipseFeature refine(const vpImage<unsigned char>& image, const Window& window,
                         const EllipseShape& start, const Gate* gate, const Window& frame);
+  TemplateMatch match(const vpImage<unsigned char>& image, const Window& window,
+                      const EllipseShape& start, double blur) const;
+  EllipseFeature judge(const TemplateMatch& match, const EdgeFit& outline, const Gate* gate,
+                       const Window& frame) const;
+  double noise_inflation(const TemplateMatch& match, const EdgeFit& outline) const;
+  void keep(const EllipseShape& shape);
 
   CorrelationTrackerParameters parameters_;
   DiscFinder finder_;
@@ -65,12 +72,60 @@ class CorrelationTracker::State {
   Eigen::Vector2d motion_ = Eigen::Vector2d::Zero();
 };
 
+TemplateMatch CorrelationTracker::State::match(const vpImage<unsigned char>& image,
+                                               const Window& window, const EllipseShape& start,
+                                               double blur) const {
+  constexpr double kMarginBlurs = 2.5;
+  return match_template(image, window, start,
+                        {std::max(parameters_.template_margin_px, kMarginBlurs * blur), blur,
+                         parameters_.max_iterations});
+}
+
 EllipseFeature CorrelationTracker::State::refine(const vpImage<unsigned char>& image,
                                                  const Window& window, const EllipseShape& start,
                                                  const Gate* gate, const Window& frame) {
-  const TemplateMatch match = match_template(
-      image, window, start,
-      {parameters_.template_margin_px, parameters_.blur_px, parameters_.max_iterations});
+  const TemplateMatch sharp = match(image, window, start, parameters_.blur_px);
+  // A correlation over all pixels hardly tells a hidden arc, another form or a cut outline.
+  const EdgeFit outline =
+      fitter_.fit(image, window, sharp.converged ? sharp.shape : start,
+                  {sharp.ground - sharp.contrast, sharp.ground, parameters_.blur_px});
+  const EllipseFeature feature = judge(sharp, outline, gate, frame);
+  // Against an edge that is much less sharp than its own, a template seldom settles.
+  constexpr double kBlurred = 1.5;
+  constexpr double kResolved = 3.0;  // blurs: a smaller ellipse may be any blot
+  const double blur = outline.profile.blur;
+  if (judge_fit(outline, parameters_.finder) == FeatureStatus::found &&
+      blur > kBlurred * parameters_.blur_px && ellipse_of(outline.shape).b > kResolved * blur) {
+    const TemplateMatch blurred = match(image, window, outline.shape, blur);
+    const EllipseFeature better = judge(blurred, outline, gate, frame);
+    // With one freedom more, the match is to be that much better.
+    if (better.status == FeatureStatus::found && better.score >= parameters_.certainty) {
+      keep(blurred.shape);
+      return better;
+    }
+  }
+  if (feature.status == FeatureStatus::found) keep(sharp.shape);
+  return feature;
+}
+
+void CorrelationTracker::State::keep(const EllipseShape& shape) {
+  tracking_ = true;
+  shape_ = shape;
+  motion_.setZero();
+}
+
+// Strong noise is cut off at 0 and 255: the flat parts of the template are then calmer than the
+// edge, and it's the edge that tells centre and axes.
+double CorrelationTracker::State::noise_inflation(const TemplateMatch& match,
+                                                  const EdgeFit& outline) const {
+  constexpr double kChance = 1.5;  // of two estimates of one variance
+  if (smoothing_for(outline.noise, parameters_.finder.min_contrast) == 0.0) return 1.0;
+  const double ratio = std::pow(outline.noise / match.noise, 2);
+  return ratio > kChance ? ratio : 1.0;
+}
+
+EllipseFeature CorrelationTracker::State::judge(const TemplateMatch& match, const EdgeFit& outline,
+                                                const Gate* gate, const Window& frame) const {
   const double score = correlation_score(sign_ * match.correlation);
   if (!match.converged) return lost_ellipse(FeatureStatus::wrong_object, score);
   if (score < parameters_.acceptance) return lost_ellipse(FeatureStatus::not_found, score);
@@ -88,10 +143,6 @@ EllipseFeature CorrelationTracker::State::refine(const vpImage<unsigned char>& i
     if (distance > parameters_.gate_sigmas * parameters_.gate_sigmas)
       return lost_ellipse(FeatureStatus::wrong_object, score);
   }
-  // A correlation over all pixels hardly tells a hidden arc, another form or a cut outline.
-  const EdgeFit outline =
-      fitter_.fit(image, window, match.shape,
-                  {match.ground - match.contrast, match.ground, parameters_.blur_px});
   const FeatureStatus judged = judge_fit(outline, parameters_.finder);
   if (judged != FeatureStatus::found) return lost_ellipse(judged, score);
   if ((outline.shape.centre - c).norm() > parameters_.max_outline_offset_px)
@@ -101,12 +152,9 @@ EllipseFeature CorrelationTracker::State::refine(const vpImage<unsigned char>& i
   feature.status = FeatureStatus::found;
   const EllipseEstimate estimate = estimate_of(match.shape, match.covariance);
   feature.ellipse = estimate.ellipse;
-  feature.covariance = estimate.covariance;
+  feature.covariance = noise_inflation(match, outline) * estimate.covariance;
   feature.contrast = match.contrast;
   feature.score = score;
-  tracking_ = true;
-  shape_ = match.shape;
-  motion_.setZero();
   return feature;
 }
 

@@ -1,5 +1,7 @@
 #include "disc_finder.hpp"
 
+#include "noise_smoothing.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -58,6 +60,7 @@ std::vector<DiscCandidate> DiscFinder::find(const vpImage<unsigned char>& image,
                                             double min_axis_ratio) {
   std::vector<DiscCandidate> out;
   if (window.empty()) return out;
+  smoothing_ = smoothing_for(noise_level(image, window), parameters_.min_contrast);
   if (polarity != Polarity::bright) find_dark(image, window, false, min_axis_ratio, out);
   if (polarity != Polarity::dark) {
     negative_.resize(image.getHeight(), image.getWidth());
@@ -74,7 +77,17 @@ std::vector<DiscCandidate> DiscFinder::find(const vpImage<unsigned char>& image,
 void DiscFinder::find_dark(const vpImage<unsigned char>& image, const imaging::Window& window,
                            bool negative, double min_axis_ratio, std::vector<DiscCandidate>& out) {
   blobs_.set_min_axis_ratio(min_axis_ratio);
-  for (const Blob& blob : blobs_.find(image, window)) {
+  find_blobs({image, image, negative}, window, min_axis_ratio, out);
+  if (smoothing_ == 0.0) return;
+  smooth(image, window, smoothing_, smooth_);
+  find_blobs({smooth_, image, negative}, window, min_axis_ratio, out);
+}
+
+void DiscFinder::find_blobs(const Pictures& pictures, const imaging::Window& window,
+                            double min_axis_ratio, std::vector<DiscCandidate>& out) {
+  // Smoothing makes small ellipses of noise and of texture.
+  constexpr double kSmoothings = 5.0;
+  for (const Blob& blob : blobs_.find(pictures.blobs, window)) {
     const bool known = std::any_of(out.begin(), out.end(), [&](const DiscCandidate& other) {
       return other.status == FeatureStatus::found
                  ? near(blob.ellipse, other.fit.shape)
@@ -83,8 +96,11 @@ void DiscFinder::find_dark(const vpImage<unsigned char>& image, const imaging::W
     if (known) continue;
     DiscCandidate candidate;
     candidate.blob = blob;
-    candidate.status = judge(candidate, image, window, min_axis_ratio);
-    if (negative) {
+    candidate.status = judge(candidate, pictures.pixels, window, min_axis_ratio);
+    if (&pictures.blobs == &smooth_ && candidate.status == FeatureStatus::found &&
+        ellipse_of(candidate.fit.shape).b < kSmoothings * smoothing_)
+      candidate.status = FeatureStatus::wrong_object;
+    if (pictures.negative) {
       EdgeProfile& profile = candidate.fit.profile;
       profile.disc = 255.0 - profile.disc;
       profile.ground = 255.0 - profile.ground;

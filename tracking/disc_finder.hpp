@@ -18,7 +18,9 @@ struct DiscCandidate {
 };
 
 /// Finds discs in a window without knowing where: blobs, tests of their form, then the fit of the
-/// outline. Bright discs are looked for in the negative.
+/// outline. Bright discs are looked for in the negative. Where the pixels' noise would break up the
+/// blobs, they are looked for in a smoothed copy as well; the fit reads the pixels as they are, so
+/// that its covariance stays true.
 class DiscFinder {
  public:
   explicit DiscFinder(const DiscTrackerParameters& parameters);
@@ -29,8 +31,17 @@ class DiscFinder {
                                   double min_axis_ratio);
 
  private:
+  /// Where dark blobs are looked for, and in which pixels their outlines are fitted.
+  struct Pictures {
+    const vpImage<unsigned char>& blobs;
+    const vpImage<unsigned char>& pixels;
+    bool negative;
+  };
+
   void find_dark(const vpImage<unsigned char>& image, const imaging::Window& window, bool negative,
                  double min_axis_ratio, std::vector<DiscCandidate>& out);
+  void find_blobs(const Pictures& pictures, const imaging::Window& window, double min_axis_ratio,
+                  std::vector<DiscCandidate>& out);
   FeatureStatus judge(DiscCandidate& candidate, const vpImage<unsigned char>& image,
                       const imaging::Window& window, double min_axis_ratio);
 
@@ -38,6 +49,8 @@ class DiscFinder {
   BlobFinder blobs_;
   EdgeFitter fitter_;
   vpImage<unsigned char> negative_;
+  vpImage<unsigned char> smooth_;
+  double smoothing_ = 0.0;  ///< standard deviation of the window's smoothing, px; 0: none
 };
 
 /// Whether a fit of an outline passes for a disc: found, occluded, low_contrast or wrong_object.

@@ -152,8 +152,19 @@ TemplateMatch match_template(const vpImage<unsigned char>& image, const imaging:
   // After a few steps the pixels stay the same, or their coming and going would keep it restless.
   constexpr int kSettled = 4;
   bool resting = false;
+  // Where the model leaves much of the grey values, full steps overshoot and swing; half steps
+  // settle.
+  constexpr double kSwing = 0.02;  // px
+  constexpr double kClose = 0.9;   // a score: less is another form
+  double movement = 0.0;
+  double damping = 1.0;
   imaging::Window window;
-  for (int iteration = 0; iteration < parameters.max_iterations; ++iteration) {
+  for (int iteration = 0; iteration < 2 * parameters.max_iterations; ++iteration) {
+    if (iteration == parameters.max_iterations) {
+      if (movement > kSwing || correlation_score(std::abs(match.correlation)) < kClose)
+        return match;
+      damping = 0.5;
+    }
     if (ellipse_of(match.shape).b < 1.5) return match;
     if (iteration < kSettled)
       window = intersect(window_round(match.shape, parameters.margin_px), bounds);
@@ -212,8 +223,9 @@ TemplateMatch match_template(const vpImage<unsigned char>& image, const imaging:
     Vector delta = factor.solve(residual);
     if (!delta.allFinite()) return match;
     const double axis = ellipse_of(match.shape).b;
-    const double movement = delta.head<2>().norm() + 0.5 * delta.segment<3>(2).norm() / axis;
+    movement = delta.head<2>().norm() + 0.5 * delta.segment<3>(2).norm() / axis;
     if (movement > 1.5) delta *= 1.5 / movement;
+    delta *= damping;
     match.shape.centre += delta.head<2>();
     match.shape.sigma(0, 0) += delta[2];
     match.shape.sigma(0, 1) += delta[3];

@@ -49,7 +49,7 @@ struct TemplateMatch {
 struct TemplateMatchParameters {
   double margin_px = 4.0;
   double blur_px = 0.75;
-  int max_iterations = 12;
+  int max_iterations = 12;  ///< of full steps, and of half steps after them where those swing
 };
 
 /// Maximising r over the model's parameters is least squares with free gain and offset:

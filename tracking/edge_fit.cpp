@@ -14,7 +14,8 @@ namespace vigia::tracking {
 namespace {
 
 constexpr double kMaxBlur = 6.0;
-constexpr double kMinAxis = 1.5;  // px
+constexpr double kMinAxis = 1.5;     // px
+constexpr double kLevelRest = 0.05;  // of the contrast: levels that change less are at rest
 
 // Φ and φ of the normal distribution, tabulated; linear in between (error below 1e-5).
 class NormalTable {
@@ -214,6 +215,7 @@ bool EdgeFitter::step() {
   const double movement =
       std::max({delta.head<2>().norm(), 0.5 * delta.segment<3>(2).norm() / (ellipse.b + 1e-9)});
   if (movement > limit) delta *= limit / movement;
+  delta *= damping_;
   shape_.centre += delta.head<2>();
   shape_.sigma(0, 0) += delta[2];
   shape_.sigma(0, 1) += delta[3];
@@ -228,28 +230,45 @@ bool EdgeFitter::step() {
 
 // Steps until the ellipse has all but come to rest, with the model evaluated there.
 bool EdgeFitter::iterate(const vpImage<unsigned char>& image, const imaging::Window& bounds) {
-  constexpr double kRest = 0.1;        // px: what is left then is a few hundredths of it
-  constexpr double kLevelRest = 0.05;  // of the contrast
+  constexpr double kRest = 0.1;  // px: what is left then is a few hundredths of it
   for (int iteration = 0; iteration < parameters_.max_iterations; ++iteration) {
-    const EllipseShape before = shape_;
-    const EdgeProfile before_profile = profile_;
-    accumulate();
-    if (!step()) return false;
-    const double axis = ellipse_of(shape_).b;
-    const auto distance = [&](const EllipseShape& from) {
-      return (shape_.centre - from.centre).norm() + 0.5 * (shape_.sigma - from.sigma).norm() / axis;
-    };
-    if (distance(band_shape_) > 0.4 * profile_.blur || profile_.blur > 1.25 * band_blur_)
-      collect(image, bounds);
-    if (count_ < 4 * kUnknowns) return false;
-    evaluate();
-    const double levels = std::abs(profile_.ground - before_profile.ground) +
-                          std::abs(profile_.disc - before_profile.disc);
-    if (distance(before) < kRest && std::abs(profile_.blur - before_profile.blur) < kRest &&
-        levels < kLevelRest * std::abs(profile_.ground - profile_.disc))
-      return true;
+    if (!advance(image, bounds)) return false;
+    if (change_ < kRest && level_change_ < kLevelRest) return true;
+  }
+  // What the model leaves of the grey values, as under a slope of light, makes full steps overshoot
+  // a sharp edge and swing about it without end; half steps settle.
+  constexpr double kSwing = 0.2;           // px
+  constexpr double kSharp = 0.3;           // px of blur
+  constexpr double kSettledRest = 0.02;    // px
+  constexpr int kEnough = 16 * kUnknowns;  // pixels; few may swing for want of an outline
+  if (change_ > kSwing || profile_.blur > kSharp || count_ < kEnough) return false;
+  damping_ = 0.5;
+  for (int iteration = 0; iteration < parameters_.max_iterations; ++iteration) {
+    if (!advance(image, bounds)) return false;
+    if (change_ < kSettledRest && level_change_ < kLevelRest) return true;
   }
   return false;
+}
+
+// One step, and how far it went.
+bool EdgeFitter::advance(const vpImage<unsigned char>& image, const imaging::Window& bounds) {
+  const EllipseShape before = shape_;
+  const EdgeProfile before_profile = profile_;
+  accumulate();
+  if (!step()) return false;
+  const double axis = ellipse_of(shape_).b;
+  const auto distance = [&](const EllipseShape& from) {
+    return (shape_.centre - from.centre).norm() + 0.5 * (shape_.sigma - from.sigma).norm() / axis;
+  };
+  if (distance(band_shape_) > 0.4 * profile_.blur || profile_.blur > 1.25 * band_blur_)
+    collect(image, bounds);
+  if (count_ < 4 * kUnknowns) return false;
+  evaluate();
+  const double levels = std::abs(profile_.ground - before_profile.ground) +
+                        std::abs(profile_.disc - before_profile.disc);
+  change_ = std::max(distance(before), std::abs(profile_.blur - before_profile.blur));
+  level_change_ = levels / std::abs(profile_.ground - profile_.disc);
+  return true;
 }
 
 // Leaves out the pixels of the sectors that disagree with the model as evaluated last; the share of
@@ -347,6 +366,7 @@ EdgeFit EdgeFitter::fit(const vpImage<unsigned char>& image, const imaging::Wind
   shape_ = start;
   profile_ = profile;
   profile_.blur = std::clamp(profile.blur, kPixelBlur, kMaxBlur);
+  damping_ = 1.0;
   collect(image, bounds);
   if (count_ < 4 * kUnknowns) return result;
   evaluate();

@@ -86,6 +86,7 @@ class EdgeFitter {
   bool step();
   double drop_bad_sectors(double& raggedness);
   bool iterate(const vpImage<unsigned char>& image, const imaging::Window& bounds);
+  bool advance(const vpImage<unsigned char>& image, const imaging::Window& bounds);
 
   EdgeFitParameters parameters_;
 
@@ -94,6 +95,9 @@ class EdgeFitter {
   EdgeProfile profile_;
   EllipseShape band_shape_;
   double band_blur_ = 0.0;
+  double damping_ = 1.0;       ///< share of a full step that is taken
+  double change_ = 0.0;        ///< of outline and blur by the last step, px
+  double level_change_ = 0.0;  ///< of the grey levels by the last step, as a share of the contrast
   bool complete_ = false;
   int bad_arcs_ = 0;
   double unrest_ = 1.0;  ///< χ² per degree of freedom of the sectors' distances

@@ -2,6 +2,7 @@
 
 #include "disc_finder.hpp"
 #include "lost_feature.hpp"
+#include "noise_smoothing.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -164,6 +165,8 @@ class MovingEdgeTracker::State {
   std::optional<EdgeMeasurement> measure(const vpImage<unsigned char>& image,
                                          const EllipseShape& start);
   EllipseFeature follow(Canvas& canvas, const EllipseShape& start, const EllipseShape& expected);
+  double margin() const { return 2.0 * parameters_.range_px + parameters_.mask_size + 4.0; }
+  std::optional<EllipseShape> seed_in_noise(Canvas& canvas, const EllipseShape& predicted);
   EllipseFeature feature_of(const EdgeMeasurement& measured, double contrast) const;
 
   MovingEdgeTrackerParameters parameters_;
@@ -229,8 +232,7 @@ EllipseFeature MovingEdgeTracker::State::feature_of(const EdgeMeasurement& measu
 EllipseFeature MovingEdgeTracker::State::follow(Canvas& canvas, const EllipseShape& start,
                                                 const EllipseShape& expected) {
   const Window frame = canvas.frame().full();
-  const double margin = 2.0 * parameters_.range_px + parameters_.mask_size + 4.0;
-  const Window window = intersect(window_round(start, margin), frame);
+  const Window window = intersect(window_round(start, margin()), frame);
   if (window.empty() || window.width < 8 || window.height < 8)
     return lost_ellipse(FeatureStatus::not_found);
   canvas.require(window);
@@ -267,6 +269,25 @@ EllipseFeature MovingEdgeTracker::State::follow(Canvas& canvas, const EllipseSha
   return feature_of(*measured, contrast);
 }
 
+// In noise that makes steps of its own, sites that start beside the edge hold on to those: the disc
+// detector has to bring them to it.
+std::optional<EllipseShape> MovingEdgeTracker::State::seed_in_noise(Canvas& canvas,
+                                                                    const EllipseShape& predicted) {
+  const Window window = intersect(window_round(predicted, margin()), canvas.frame().full());
+  if (window.empty()) return std::nullopt;
+  canvas.require(window);
+  const double noise = noise_level(canvas.image(), window);
+  if (smoothing_for(noise, parameters_.finder.min_contrast) == 0.0) return std::nullopt;
+  EllipsePrediction prediction;
+  prediction.ellipse = ellipse_of(predicted);
+  const double sigma = parameters_.range_px / parameters_.gate_sigmas;
+  prediction.centre_covariance = Eigen::Matrix2d::Identity() * sigma * sigma;
+  prediction.scale_sigma = parameters_.max_scale_step / parameters_.gate_sigmas;
+  const EllipseFeature seed = seeds_.acquire(canvas, prediction);
+  if (seed.status != FeatureStatus::found) return std::nullopt;
+  return shape_of(seed.ellipse);
+}
+
 MovingEdgeTracker::MovingEdgeTracker(const MovingEdgeTrackerParameters& parameters)
     : state_(std::make_unique<State>(parameters)) {}
 MovingEdgeTracker::~MovingEdgeTracker() = default;
@@ -282,7 +303,8 @@ EllipseFeature MovingEdgeTracker::track(Canvas& canvas) {
   if (!state_->tracking_) return lost_ellipse(FeatureStatus::not_found);
   EllipseShape predicted = state_->shape_;
   predicted.centre += state_->motion_;
-  return state_->follow(canvas, predicted, predicted);
+  const EllipseShape start = state_->seed_in_noise(canvas, predicted).value_or(predicted);
+  return state_->follow(canvas, start, predicted);
 }
 
 std::vector<EllipseFeature> MovingEdgeTracker::find_all(Canvas& canvas) {
