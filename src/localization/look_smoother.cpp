@@ -1,6 +1,7 @@
 #include "look_smoother.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/Cholesky>
 
@@ -32,6 +33,22 @@ Vector6 wrapped(Vector6 difference) {
   return difference;
 }
 
+/// The increment that leads from @p from to @p to; its turns add up to those of @p read.
+OdometryIncrement way_between(const Vector6& from, const Vector6& to,
+                              const OdometryIncrement& read) {
+  constexpr double kTurnKnown = 1e-3;  // m of way below which its direction is that read
+  const Eigen::Vector2d ahead = unit_vector(from(2) + read.rot1);
+  const Eigen::Vector2d moved = (to - from).head<2>();
+  OdometryIncrement way = read;
+  way.trans = ahead.dot(moved);
+  if (std::abs(way.trans) < kTurnKnown) return way;
+  const double turn = std::atan(cross(ahead, moved) / way.trans);
+  way.trans /= std::cos(turn);
+  way.rot1 += turn;
+  way.rot2 -= turn;
+  return way;
+}
+
 /// Moves @p state by an increment linearised at @p at and at the way from there to @p next. The
 /// derivatives by the heading go with that way: with the way as read, whose error is correlated
 /// with what the images say of it, headings and ranges would be biased by a third of their sigma.
@@ -39,12 +56,12 @@ void pass(const Motion& motion, const Vector6& at, const Vector6& next, const Lo
           EkfState& state, Linearised& about) {
   const OdometryIncrement& read = motion.increment;
   const Pose2 pose = Pose2::from_vector(at.head<3>());
-  OdometryIncrement smoothed = read;
-  smoothed.trans = unit_vector(pose.theta + read.rot1).dot((next - at).head<2>());
-  about.dx_dx = move_jacobian_pose(pose, smoothed);
-  state.mean.head<3>() =
-      move(pose, read).vector() + about.dx_dx * wrapped(state.mean - at).head<3>();
-  state.covariance = propagate_covariance(state.covariance, pose, smoothed,
+  const OdometryIncrement way = way_between(at, next, read);
+  const Eigen::Vector3d error(read.rot1 - way.rot1, read.trans - way.trans, read.rot2 - way.rot2);
+  about.dx_dx = move_jacobian_pose(pose, way);
+  state.mean.head<3>() = move(pose, way).vector() + move_jacobian_control(pose, way) * error +
+                         about.dx_dx * wrapped(state.mean - at).head<3>();
+  state.covariance = propagate_covariance(state.covariance, pose, way,
                                           control_covariance(motion.even, model.odometry));
   state.stamp = read.to;
 }

@@ -57,19 +57,17 @@ class BatchLook {
     Eigen::VectorXd unknown = Eigen::VectorXd::Zero(6 + 3 * (kImages - 1));
     Eigen::MatrixXd information;
     for (int i = 0; i < 20; ++i) {
-      const std::vector<Vector6> about = trajectory(unknown, {});
-      const auto f = [&](const Eigen::VectorXd& x) { return residuals(x, about); };
+      const auto f = [&](const Eigen::VectorXd& x) { return residuals(x); };
       const Eigen::MatrixXd J = derivative(f, unknown);
       information = J.transpose() * J;
       unknown -= information.ldlt().solve(J.transpose() * f(unknown));
     }
-    const std::vector<Vector6> about = trajectory(unknown, {});
     const auto end = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
-      return trajectory(x, about).back();
+      return trajectory(x).back();
     };
     const Eigen::MatrixXd J = derivative(end, unknown);
     EkfState state;
-    state.mean = about.back();
+    state.mean = trajectory(unknown).back();
     state.covariance = J * information.ldlt().solve(J.transpose());
     return state;
   }
@@ -85,26 +83,24 @@ class BatchLook {
     return J;
   }
 
-  /// The noise enters along the motion's derivative at @p about, where there is one.
-  std::vector<Vector6> trajectory(const Eigen::VectorXd& unknown,
-                                  const std::vector<Vector6>& about) const {
+  std::vector<Vector6> trajectory(const Eigen::VectorXd& unknown) const {
     Vector6 state = unknown.head<6>();
     state.head<3>() += look_.prior.pose.vector();
     std::vector<Vector6> states{state};
     for (std::size_t k = 0; k < look_.measured.size(); ++k) {
-      const OdometryIncrement& u = look_.measured[k];
-      const Vector6& at = about.empty() ? state : about[k];
+      OdometryIncrement u = look_.measured[k];
       const Eigen::Vector3d w = unknown.segment<3>(6 + 3 * static_cast<Eigen::Index>(k));
-      state.head<3>() = move(Pose2::from_vector(state.head<3>()), u).vector() +
-                        move_jacobian_control(Pose2::from_vector(at.head<3>()), u) * w;
+      u.rot1 += w(0);
+      u.trans += w(1);
+      u.rot2 += w(2);
+      state.head<3>() = move(Pose2::from_vector(state.head<3>()), u).vector();
       states.push_back(state);
     }
     return states;
   }
 
-  Eigen::VectorXd residuals(const Eigen::VectorXd& unknown,
-                            const std::vector<Vector6>& about) const {
-    const std::vector<Vector6> states = trajectory(unknown, about);
+  Eigen::VectorXd residuals(const Eigen::VectorXd& unknown) const {
+    const std::vector<Vector6> states = trajectory(unknown);
     Eigen::VectorXd r(unknown.size() + 3 * kImages);
     Vector6 first = unknown.head<6>();
     r.head<3>() = look_.prior.covariance.llt().matrixL().solve(first.head<3>().eval());
