@@ -20,7 +20,7 @@ TEST(MeanSpeed, AReadingOfNextToNothingInADriveWentAsFarAsTheOthers) {
 }
 
 TEST(MeanSpeed, AReadingThatTellsItsDistanceIsTakenAtItsWord) {
-  MeanSpeed speed({0.005, 0.015, 0.005});
+  MeanSpeed speed({0.002, 0.015, 0.005});
   for (int tick = 0; tick < 40; ++tick) speed.even(straight_step(tick, 0.3));
   EXPECT_DOUBLE_EQ(speed.even(straight_step(40, 0.2)).trans, 0.2 * kStep);
 }
