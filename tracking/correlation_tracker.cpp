@@ -89,7 +89,7 @@ EllipseFeature CorrelationTracker::State::refine(const vpImage<unsigned char>& i
   const EdgeFit outline =
       fitter_.fit(image, window, sharp.converged ? sharp.shape : start,
                   {sharp.ground - sharp.contrast, sharp.ground, parameters_.blur_px});
-  const EllipseFeature feature = judge(sharp, outline, gate, frame);
+  EllipseFeature feature = judge(sharp, outline, gate, frame);
   // Against an edge that is much less sharp than its own, a template seldom settles.
   constexpr double kBlurred = 1.5;
   constexpr double kResolved = 3.0;  // blurs: a smaller ellipse may be any blot
@@ -97,7 +97,7 @@ EllipseFeature CorrelationTracker::State::refine(const vpImage<unsigned char>& i
   if (judge_fit(outline, parameters_.finder) == FeatureStatus::found &&
       blur > kBlurred * parameters_.blur_px && ellipse_of(outline.shape).b > kResolved * blur) {
     const TemplateMatch blurred = match(image, window, outline.shape, blur);
-    const EllipseFeature better = judge(blurred, outline, gate, frame);
+    EllipseFeature better = judge(blurred, outline, gate, frame);
     // With one freedom more, the match is to be that much better.
     if (better.status == FeatureStatus::found && better.score >= parameters_.certainty) {
       keep(blurred.shape);

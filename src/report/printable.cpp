@@ -1,5 +1,6 @@
 #include "vigia/report/printable.hpp"
 
+#include "png_resolution.hpp"
 #include "sheet.hpp"
 
 #include <algorithm>
