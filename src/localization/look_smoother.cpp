@@ -51,7 +51,7 @@ OdometryIncrement way_between(const Vector6& from, const Vector6& to,
 
 /// Moves @p state by an increment linearised at @p at and at the way from there to @p next. The
 /// derivatives by the heading go with that way: with the way as read, whose error is correlated
-/// with what the images say of it, headings and ranges would be biased by a third of their sigma.
+/// with what the images say of it, headings and ranges would be biased by a fifth of their sigma.
 void pass(const Motion& motion, const Vector6& at, const Vector6& next, const LookModel& model,
           EkfState& state, Linearised& about) {
   const OdometryIncrement& read = motion.increment;
