@@ -7,6 +7,8 @@ const std::vector<Paper>& papers() {
       {"armingol", "odometry against relocalisation with a pan-tilt-zoom camera",
        &reproduce_armingol},
       {"quixote", "pose from one view of the nine-point colour pattern", &reproduce_quixote},
+      {"minho", "a field's lines in a mirror camera: grid match, MCL, MUREA, kidnapping",
+       &reproduce_minho},
   };
   return all;
 }

@@ -12,6 +12,7 @@
 
 // The functions of tests/fuzz, which abort when more than an InputError comes of a text.
 extern "C" int fuzz_config(const std::uint8_t* data, std::size_t size);
+extern "C" int fuzz_field(const std::uint8_t* data, std::size_t size);
 extern "C" int fuzz_world(const std::uint8_t* data, std::size_t size);
 
 namespace vigia {
@@ -34,6 +35,7 @@ void run(const std::string& text) {
   const auto* data = reinterpret_cast<const std::uint8_t*>(text.data());
   fuzz_config(data, text.size());
   fuzz_world(data, text.size());
+  fuzz_field(data, text.size());
 }
 
 /// One edit of the kinds that break a reader: a byte of YAML's grammar, a cut, a copy, a splice.

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "vigia/core/belief.hpp"
+#include "vigia/core/odometry.hpp"
+#include "vigia/core/random.hpp"
+#include "vigia/localization/field_match.hpp"
+#include "vigia/localization/field_model.hpp"
+
+namespace vigia::localization {
+
+struct MclParams {
+  enum class Method {
+    as_described,  ///< kind and angle of transitions alone, a fixed number of particles, uniform
+                   ///< start, no injection (Minho §II.A)
+    best,
+  };
+  Method method = Method::best;
+  OdometryNoise odometry;
+  int min_particles = 500;
+  int max_particles = 3000;
+  /// KLD sampling (Fox 2003): with probability 0.99 the sampled distribution is within kld_error of
+  /// the one over bins of these sizes.
+  double kld_error = 0.03;
+  double bin_m = 0.1;
+  double bin_rad = 0.05;
+  /// Resampled when the effective number of particles is below this share of them.
+  double resample_share = 0.5;
+  /// Updates between two in which the present image may suggest poses of its own …
+  int check_every = 10;
+  /// … to so many particles, for which the prior probability of a kidnapping is at least this, and
+  /// grows when the likelihood falls below its long-term mean.
+  int injected = 200;
+  double kidnapped = 1e-6;
+  /// Share of the way of the likelihood's short- and long-term means to each new value.
+  double fast = 0.4;
+  double slow = 0.02;
+  /// A hypothesis is believed alone from this weight on.
+  double sure = 0.95;
+  double lost_sigma_m = 0.6;
+};
+
+struct Particle {
+  Pose2 pose;
+  double weight = 0.0;
+};
+
+/// Monte Carlo localization (Dellaert, Fox, Burgard, Thrun 1999; Minho §II.A): move the particles
+/// by odometry and its noise, weigh them by the likelihood of the observation, resample (low
+/// variance, size by KLD). Poses that the present image suggests are injected as samples of a
+/// mixture prior – mostly the particles', a little uniform – weighed by the same likelihood.
+///
+/// On a field that half a turn leaves as it is, likelihoods never tell a pose from its twin: the
+/// particles follow one of the two and the twin's weight is kept beside them.
+class Mcl {
+ public:
+  Mcl(const FieldModel& model, const MclParams& params, std::uint64_t seed);
+
+  /// Without a prior: uniform over the field.
+  void reset(Stamp stamp, const std::optional<Prior>& prior);
+  void predict(const OdometryIncrement& increment);
+  void update(const FieldScan& scan);
+  const Belief& belief() const { return belief_; }
+  const std::vector<Particle>& particles() const { return particles_; }
+
+ private:
+  struct Spread {
+    Pose2 mean;
+    Eigen::Matrix3d covariance;
+  };
+  void sample_uniform(int count);
+  void sample_gaussian(const Prior& prior, int count);
+  Spread spread_of_all() const;
+  double log_weight(const FieldScan& scan, const Pose2& pose) const;
+  void weigh(const FieldScan& scan);
+  void inject(const FieldScan& scan, const Spread& before);
+  double kidnap_prior() const;
+  void resample();
+  void refresh_belief();
+  void watch_likelihood(const FieldScan& scan);
+
+  const FieldModel* model_;
+  MclParams params_;
+  FieldMatcher matcher_;
+  RandomStream random_;
+  std::vector<Particle> particles_;
+  std::vector<double> log_likelihoods_;
+  bool narrow_start_ = false;  ///< the particles still are those of a Gaussian prior
+  double clutter_;
+  std::optional<double> fast_;
+  std::optional<double> slow_;
+  int since_check_ = 0;
+  double twin_weight_ = 0.0;
+  Belief belief_;
+};
+
+}  // namespace vigia::localization

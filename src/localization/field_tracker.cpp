@@ -1,0 +1,165 @@
+#include "vigia/localization/field_tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Dense>
+
+#include "vigia/core/angle.hpp"
+
+namespace vigia::localization {
+namespace {
+
+constexpr double kSameHypothesis_m = 0.15;
+constexpr double kSameTurn = 0.06;
+constexpr double kForgotten = 60.0;  // log weight below the best's at which a hypothesis goes
+constexpr double kUsualGain = 0.05;
+constexpr double kFallen = 0.35;  // of the log-likelihood a point: about a fifth of the points lost
+
+bool same_hypothesis(const Pose2& a, const Pose2& b) {
+  const Eigen::Vector3d d = difference(a, b);
+  return d.head<2>().norm() < kSameHypothesis_m && std::abs(d.z()) < kSameTurn;
+}
+
+}  // namespace
+
+FieldTracker::FieldTracker(const FieldModel& model, const FieldTrackerParams& params)
+    : model_(&model), params_(params), matcher_(model), clutter_(model.params().clutter) {}
+
+void FieldTracker::reset(Stamp stamp, const std::optional<Prior>& prior) {
+  hypotheses_.clear();
+  usual_.reset();
+  since_check_ = params_.check_every;
+  if (prior) hypotheses_.push_back({prior->pose, prior->covariance, 0.0});
+  belief_ = Belief{};
+  belief_.stamp = stamp;
+  refresh_belief();
+}
+
+void FieldTracker::predict(const OdometryIncrement& increment) {
+  for (Hypothesis& hypothesis : hypotheses_) {
+    const Eigen::Matrix3d F = move_jacobian_pose(hypothesis.pose, increment);
+    const Eigen::Matrix3d G = move_jacobian_control(hypothesis.pose, increment);
+    hypothesis.covariance = F * hypothesis.covariance * F.transpose() +
+                            G * control_covariance(increment, params_.odometry) * G.transpose();
+    hypothesis.pose = move(hypothesis.pose, increment);
+  }
+  belief_.stamp = increment.to;
+  refresh_belief();
+}
+
+void FieldTracker::refine_all(const FieldScan& scan) {
+  FieldRefineParams fixed;
+  fixed.clutter = clutter_;
+  for (Hypothesis& hypothesis : hypotheses_) {
+    Eigen::Matrix3d covariance = hypothesis.covariance + 1e-10 * Eigen::Matrix3d::Identity();
+    const FieldFix fix = refine_field_pose(*model_, scan.points, hypothesis.pose,
+                                           Prior{hypothesis.pose, covariance}, fixed);
+    if (fix.status == FieldFixStatus::degenerate) continue;
+    hypothesis.pose = fix.pose;
+    hypothesis.covariance = fix.covariance;
+    hypothesis.log_weight += fix.log_evidence + model_->log_likelihood_of_sightings(scan, fix.pose);
+  }
+}
+
+void FieldTracker::add_matches(const FieldScan& scan) {
+  const FieldMap& map = model_->map();
+  const double log_density = -std::log(map.length_m * map.width_m * 2.0 * kPi);
+  const double log_prior = (hypotheses_.empty() ? 0.0 : std::log(params_.kidnapped)) + log_density;
+  for (const auto& suggestion : matcher_.match(scan)) {
+    const bool known =
+        std::any_of(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& hypothesis) {
+          return same_hypothesis(hypothesis.pose, suggestion.fix.pose);
+        });
+    if (known) continue;
+    FieldRefineParams fixed;
+    fixed.clutter = clutter_;
+    const FieldFix fix =
+        refine_field_pose(*model_, scan.points, suggestion.fix.pose, std::nullopt, fixed);
+    if (fix.status == FieldFixStatus::degenerate) continue;
+    const double log_evidence =
+        fix.log_evidence + model_->log_likelihood_of_sightings(scan, fix.pose);
+    hypotheses_.push_back({fix.pose, fix.covariance, log_prior + log_evidence});
+  }
+}
+
+bool FieldTracker::evidence_has_fallen() const {
+  return usual_ && last_ < *usual_ - kFallen;
+}
+
+void FieldTracker::merge_and_prune() {
+  std::sort(hypotheses_.begin(), hypotheses_.end(),
+            [](const Hypothesis& a, const Hypothesis& b) { return a.log_weight > b.log_weight; });
+  std::vector<Hypothesis> kept;
+  for (const Hypothesis& hypothesis : hypotheses_) {
+    if (kept.size() >= static_cast<std::size_t>(params_.hypotheses)) break;
+    if (!kept.empty() && hypothesis.log_weight < kept.front().log_weight - kForgotten) break;
+    const bool double_of_another = std::any_of(kept.begin(), kept.end(), [&](const auto& other) {
+      return same_hypothesis(other.pose, hypothesis.pose);
+    });
+    if (!double_of_another) kept.push_back(hypothesis);
+  }
+  if (!kept.empty()) {
+    const double highest = kept.front().log_weight;
+    for (Hypothesis& hypothesis : kept) hypothesis.log_weight -= highest;
+  }
+  hypotheses_ = std::move(kept);
+}
+
+void FieldTracker::update(const FieldScan& scan) {
+  belief_.stamp = scan.stamp;
+  if (scan.points.empty()) return;
+  // Log weights that are to be compared with a match's carry the norm of all: one.
+  double sum = 0.0;
+  for (const Hypothesis& hypothesis : hypotheses_) sum += std::exp(hypothesis.log_weight);
+  for (Hypothesis& hypothesis : hypotheses_) hypothesis.log_weight -= std::log(sum);
+  refine_all(scan);
+  ++since_check_;
+  const bool unsure = belief_.status != BeliefStatus::tracking && since_check_ >= 3;
+  if (hypotheses_.empty() || since_check_ >= params_.check_every || unsure ||
+      (evidence_has_fallen() && since_check_ >= 2)) {
+    add_matches(scan);
+    since_check_ = 0;
+  }
+  merge_and_prune();
+  refresh_belief();
+  if (hypotheses_.empty()) return;
+  const FieldLinearisation at = model_->linearise(scan.points, hypotheses_.front().pose, clutter_);
+  const double points = static_cast<double>(scan.points.size());
+  last_ = at.log_likelihood / points;
+  usual_ = usual_ ? *usual_ + kUsualGain * (last_ - *usual_) : last_;
+  const double off = (points - at.on_lines + 1.0) / (points + 5.0);
+  clutter_ = std::clamp(clutter_ + 0.1 * (off - clutter_), 0.01, 0.7);
+}
+
+double FieldTracker::doubt() const {
+  if (hypotheses_.empty()) return 1.0;
+  double sum = 0.0;
+  for (const Hypothesis& hypothesis : hypotheses_) sum += std::exp(hypothesis.log_weight);
+  return 1.0 - std::exp(hypotheses_.front().log_weight) / sum;
+}
+
+void FieldTracker::refresh_belief() {
+  belief_.hypotheses.clear();
+  belief_.status = BeliefStatus::lost;
+  if (hypotheses_.empty()) {
+    const FieldMap& map = model_->map();
+    belief_.pose = {};
+    belief_.covariance = Eigen::Vector3d(map.length_m * map.length_m / 12.0,
+                                         map.width_m * map.width_m / 12.0, kPi * kPi / 3.0)
+                             .asDiagonal();
+    return;
+  }
+  belief_.pose = hypotheses_.front().pose;
+  belief_.covariance = hypotheses_.front().covariance;
+  const double weight = 1.0 - doubt();
+  if (belief_.position_sigma() > params_.lost_sigma_m || weight < 0.3) return;
+  belief_.status = weight >= params_.sure ? BeliefStatus::tracking : BeliefStatus::ambiguous;
+  if (belief_.status != BeliefStatus::ambiguous) return;
+  for (const Hypothesis& hypothesis : hypotheses_)
+    belief_.hypotheses.push_back(
+        {hypothesis.pose, hypothesis.covariance, weight * std::exp(hypothesis.log_weight)});
+}
+
+}  // namespace vigia::localization
