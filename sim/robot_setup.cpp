@@ -111,6 +111,13 @@ void read_sensor(MapReader sensor, SensorNoise& noise) {
 
 }  // namespace
 
+Rig RobotSetup::rig() const {
+  Camera camera;
+  camera.mount = robot.head;
+  camera.optics = zoom;
+  return {{camera}};
+}
+
 RobotSetup read_robot_setup(MapReader& reader) {
   RobotSetup setup;
   setup.name = reader.text("name", "robot");

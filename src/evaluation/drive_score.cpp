@@ -27,11 +27,11 @@ void bound_by(const Observation& observation, const Landmark& landmark,
               const sim::RobotTruth& truth, PosteriorBound& bound) {
   const auto& angle = truth.look_angle_error;
   const localization::LookBias bias{angle.pan, angle.tilt, truth.look_log_focal_error};
-  const SensorSnapshot& sensor = sensor_of(observation);
+  const Shot& shot = shot_of(observation);
   if (const auto* disc = std::get_if<EllipseObservation>(&observation))
-    bound.update(truth.pose, landmark, sensor, bias, localization::measured_disc_covariance(*disc));
+    bound.update(truth.pose, landmark, shot, bias, localization::measured_disc_covariance(*disc));
   if (const auto* points = std::get_if<PointsObservation>(&observation))
-    bound.update(truth.pose, landmark, sensor, bias, localization::seen_points(landmark, *points));
+    bound.update(truth.pose, landmark, shot, bias, localization::seen_points(landmark, *points));
 }
 
 }  // namespace

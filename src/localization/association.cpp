@@ -52,14 +52,14 @@ Association associate(const AssociationModel& model, const EkfState& state,
   association.best_nis = std::numeric_limits<double>::infinity();
   for (const Landmark& landmark : model.map.all()) {
     const auto predicted =
-        predict_disc(landmark, observation.sensor, model.geometry, state.pose(), state.bias());
+        predict_disc(landmark, observation.shot, model.geometry, state.pose(), state.bias());
     if (!predicted) continue;
     const Candidate candidate = weigh(landmark, *predicted, model, state, z, R);
     if (!std::isfinite(candidate.cost)) continue;
     association.any_image = true;
     association.best_nis = std::min(association.best_nis, candidate.nis);
     if (candidate.nis > model.gate) continue;
-    if (surely_hidden(model, state, observation.sensor.head, landmark)) continue;
+    if (surely_hidden(model, state, observation.shot.head, landmark)) continue;
     association.inside_gate.push_back(candidate);
   }
   std::stable_sort(association.inside_gate.begin(), association.inside_gate.end(),

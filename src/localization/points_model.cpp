@@ -169,14 +169,13 @@ std::optional<PointsFit> fit_points(const std::vector<SeenPoint>& points,
 }
 
 std::optional<PointsMeasurement> measure_points(const std::vector<SeenPoint>& points,
-                                                const Eigen::Isometry3d& wMl,
-                                                const SensorSnapshot& sensor,
+                                                const Eigen::Isometry3d& wMl, const Shot& shot,
                                                 const HeadGeometry& geometry, const Pose2& pose,
                                                 const LookBias& bias) {
-  const HeadAngles head{sensor.head.pan + bias.pan, sensor.head.tilt + bias.tilt};
+  const HeadAngles head{shot.head.pan + bias.pan, shot.head.tilt + bias.tilt};
   const Eigen::Isometry3d wMc = to_isometry(pose) * camera_in_base(geometry, head);
   const Eigen::Isometry3d cMl = wMc.inverse() * wMl;
-  Intrinsics intrinsics = sensor.intrinsics;
+  Intrinsics intrinsics = pinhole(shot);
   intrinsics.px *= std::exp(bias.log_focal);
   intrinsics.py *= std::exp(bias.log_focal);
   const auto fit = fit_points(points, intrinsics, cMl);

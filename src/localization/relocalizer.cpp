@@ -23,10 +23,10 @@ const Eigen::Vector3d kSeedSigma(0.3, 0.3, from_deg(4.0));
 
 /// Two frames of one look that show the same disc count once: they share their biases.
 bool same_disc(const EllipseObservation& a, const EllipseObservation& b) {
-  if (a.sensor.look != b.sensor.look) return false;
+  if (a.shot.look != b.shot.look) return false;
   const auto direction = [](const EllipseObservation& seen) {
-    const Eigen::Vector2d xy = unproject(seen.sensor.intrinsics, {seen.ellipse.u, seen.ellipse.v});
-    return Eigen::Vector3d(camera_in_base({}, seen.sensor.head).linear() *
+    const Eigen::Vector2d xy = unproject(pinhole(seen.shot), {seen.ellipse.u, seen.ellipse.v});
+    return Eigen::Vector3d(camera_in_base({}, seen.shot.head).linear() *
                            xy.homogeneous().normalized());
   };
   return direction(a).dot(direction(b)) > std::cos(from_deg(2.0));
@@ -47,11 +47,11 @@ std::vector<EllipseObservation> distinct(const std::vector<EllipseObservation>& 
 
 /// Where a disc of the given radius stands in the base frame, its range from the longer axis.
 Eigen::Vector2d place(const EllipseObservation& seen, double radius, const HeadGeometry& geometry) {
-  const Intrinsics& intrinsics = seen.sensor.intrinsics;
+  const Intrinsics& intrinsics = pinhole(seen.shot);
   const Eigen::Vector2d xy = unproject(intrinsics, {seen.ellipse.u, seen.ellipse.v});
   const double depth = radius * std::sqrt(intrinsics.px * intrinsics.py) / seen.ellipse.a;
   const Eigen::Vector3d p_r =
-      camera_in_base(geometry, seen.sensor.head) * Eigen::Vector3d(depth * xy.homogeneous());
+      camera_in_base(geometry, seen.shot.head) * Eigen::Vector3d(depth * xy.homogeneous());
   return p_r.head<2>();
 }
 
@@ -176,7 +176,7 @@ std::optional<Relocalizer::Fit> Relocalizer::refine(const Pose2& start,
     }
     for (const Match& match : matches) {
       const auto image =
-          predict_disc(*match.landmark, match.sighting->sensor, geometry_, fit.pose, {});
+          predict_disc(*match.landmark, match.sighting->shot, geometry_, fit.pose, {});
       if (!image) return std::nullopt;
       const Eigen::Matrix3d S =
           total_covariance(*image, pixel_covariance(*match.sighting), params_.sensor);
@@ -198,10 +198,10 @@ std::optional<Relocalizer::Fit> Relocalizer::refine(const Pose2& start,
 }
 
 bool Relocalizer::plausible(const Match& match, const Pose2& pose) const {
-  const HeadAngles& head = match.sighting->sensor.head;
+  const HeadAngles& head = match.sighting->shot.head;
   const Eigen::Isometry3d wMc = to_isometry(pose) * camera_in_base(geometry_, head);
   if (!plan_.line_of_sight(wMc.translation(), match.landmark->centre_w())) return false;
-  const auto image = disc_image(*match.landmark, match.sighting->sensor.intrinsics, wMc);
+  const auto image = disc_image(*match.landmark, pinhole(match.sighting->shot), wMc);
   if (!image) return false;
   const Ellipse& seen = match.sighting->ellipse;
   return std::abs(image->b / image->a - seen.b / seen.a) < params_.aspect_tolerance;
@@ -214,7 +214,7 @@ std::vector<Relocalizer::Match> Relocalizer::explain(
     Match best{&seen, nullptr};
     double least = gate_;
     for (const Landmark& landmark : map_.all()) {
-      const auto image = predict_disc(landmark, seen.sensor, geometry_, fit.pose, {});
+      const auto image = predict_disc(landmark, seen.shot, geometry_, fit.pose, {});
       if (!image) continue;
       const Eigen::Matrix3d S = total_covariance(*image, pixel_covariance(seen), params_.sensor) +
                                 image->dz_dpose * fit.covariance * image->dz_dpose.transpose();
@@ -230,12 +230,12 @@ std::vector<Relocalizer::Match> Relocalizer::explain(
 }
 
 bool Relocalizer::should_be_seen(const Landmark& landmark, const Pose2& pose,
-                                 const SensorSnapshot& view) const {
+                                 const Shot& view) const {
   const Eigen::Isometry3d wMc = to_isometry(pose) * camera_in_base(geometry_, view.head);
-  const auto image = disc_image(landmark, view.intrinsics, wMc);
+  const auto image = disc_image(landmark, pinhole(view), wMc);
   if (!image || image->a < params_.min_radius_px) return false;
   const double margin = 2.0 * image->a;
-  if (!in_image(view.intrinsics, {image->u, image->v}, margin)) return false;
+  if (!in_image(pinhole(view), {image->u, image->v}, margin)) return false;
   const Eigen::Vector3d line = wMc.translation() - landmark.centre_w();
   const double cosine = line.normalized().dot(landmark.normal_w());
   return line.norm() <= params_.max_range_m &&
@@ -254,7 +254,7 @@ int Relocalizer::missed(const Hypothesis& hypothesis, const Sweep& sweep) const 
   return static_cast<int>(
       std::count_if(map_.all().begin(), map_.all().end(), [&](const Landmark& landmark) {
         return seen.count(landmark.id) == 0 &&
-               std::any_of(sweep.views.begin(), sweep.views.end(), [&](const SensorSnapshot& view) {
+               std::any_of(sweep.views.begin(), sweep.views.end(), [&](const Shot& view) {
                  return should_be_seen(landmark, hypothesis.fit.pose, view);
                });
       }));

@@ -53,7 +53,7 @@ Run run_filter(const Drive& drive, const EkfParams& params) {
       const auto result = ekf.update(*step.seen);
       const bool fused = result.status == localization::UpdateStatus::fused;
       fused ? ++run.fused : ++run.other;
-      bound.update(step.pose, *map.find(*step.seen->expected), step.seen->sensor, step.bias,
+      bound.update(step.pose, *map.find(*step.seen->expected), step.seen->shot, step.bias,
                    measured_disc_covariance(*step.seen));
     }
     before = step.pose;

@@ -31,14 +31,14 @@ TEST(PosteriorBound, EqualsTheCovarianceOfAFilterThatSitsOnTheTruth) {
     before = step.pose;
     if (!step.seen) continue;
     const Landmark& landmark = *map.find(*step.seen->expected);
-    const SensorSnapshot sensor = localization::test::aimed_sensor(
-        landmark, drive.geometry, step.pose, {}, step.seen->sensor.look, step.seen->sensor.stamp);
-    EllipseObservation seen = localization::test::observe(landmark, sensor, drive.geometry,
-                                                          step.pose, {}, 0.0, 0.0, random);
+    const Shot shot = localization::test::aimed_shot(landmark, drive.geometry, step.pose, {},
+                                                     step.seen->shot.look, step.seen->shot.stamp);
+    EllipseObservation seen = localization::test::observe(landmark, shot, drive.geometry, step.pose,
+                                                          {}, 0.0, 0.0, random);
     seen.covariance = step.seen->covariance;
     ASSERT_EQ(ekf.update(seen).status, localization::UpdateStatus::fused);
-    ASSERT_TRUE(bound.update(step.pose, landmark, sensor, {},
-                             localization::measured_disc_covariance(seen)));
+    ASSERT_TRUE(
+        bound.update(step.pose, landmark, shot, {}, localization::measured_disc_covariance(seen)));
     ASSERT_TRUE(ekf.belief().covariance.isApprox(bound.covariance(), 1e-6));
   }
 }

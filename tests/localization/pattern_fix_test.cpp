@@ -24,13 +24,13 @@ Eigen::Isometry3d on_the_ramp() {
 PointsObservation seen_from(const Eigen::Isometry3d& wMr, const Landmark& landmark,
                             const LookBias& bias, double sigma, RandomStream& random,
                             Stamp stamp = {}) {
-  SensorSnapshot sensor;
-  sensor.stamp = stamp;
-  sensor.look = 1;
+  Shot shot;
+  shot.stamp = stamp;
+  shot.look = 1;
   const HeadAngles aim = aim_at(kHead, wMr.inverse() * landmark.centre_w());
-  sensor.head = {aim.pan - bias.pan, aim.tilt - bias.tilt};
-  sensor.intrinsics = test::zoom_calibration().at(30.0);
-  return test::observe_points(landmark, sensor, kHead, wMr, bias, 0.0, sigma, random);
+  shot.head = {aim.pan - bias.pan, aim.tilt - bias.tilt};
+  shot.model = test::zoom_calibration().at(30.0);
+  return test::observe_points(landmark, shot, kHead, wMr, bias, 0.0, sigma, random);
 }
 
 PatternFixLocalizer localizer(const PatternFixParams& params = {}) {

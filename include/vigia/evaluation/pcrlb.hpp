@@ -34,12 +34,12 @@ class PosteriorBound {
   /// readings, @p bias the true errors of the look's readings, @p R the covariance of (u, v, s)
   /// in the image (the white part of the readings is added here). False, and nothing changed, when
   /// the disc has no image from there.
-  bool update(const Pose2& truth, const Landmark& landmark, const SensorSnapshot& sensor,
+  bool update(const Pose2& truth, const Landmark& landmark, const Shot& shot,
               const localization::LookBias& bias, const Eigen::Matrix3d& R);
 
   /// Takes in one image of a pattern or tag, of which @p points were seen (their covariances count,
   /// not their pixels).
-  bool update(const Pose2& truth, const Landmark& landmark, const SensorSnapshot& sensor,
+  bool update(const Pose2& truth, const Landmark& landmark, const Shot& shot,
               const localization::LookBias& bias,
               const std::vector<localization::SeenPoint>& points);
 

@@ -40,7 +40,7 @@ struct DiscMeasurement {
 };
 
 /// Predicts (u, v, ln √(ab)) with analytic Jacobians. Nothing where disc_image() has nothing.
-std::optional<DiscMeasurement> predict_disc(const Landmark& landmark, const SensorSnapshot& sensor,
+std::optional<DiscMeasurement> predict_disc(const Landmark& landmark, const Shot& shot,
                                             const HeadGeometry& geometry, const Pose2& pose,
                                             const LookBias& bias);
 

@@ -110,7 +110,7 @@ class EkfLocalizer final : public Localizer {
   Match match(const PointsObservation& observation, const EkfState& at) const;
   void append(const EkfInput& input, bool extrapolated = false);
   void move_by(const Motion& motion, Event& event) const;
-  void fuse(const SensorSnapshot& sensor, Event& event) const;
+  void fuse(const Shot& shot, Event& event) const;
   std::vector<const EkfInput*> inputs_of_look(const Event& event) const;
   std::vector<Vector6> guess_of_look(const Event& event) const;
   EkfState with_look(const EkfState& state, LookId look) const;

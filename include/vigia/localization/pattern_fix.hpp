@@ -45,7 +45,7 @@ class PatternFixLocalizer final : public Localizer {
  private:
   UpdateResult take_in(const PointsObservation& observation);
   const FittedPose* upright(const PointsPose& solved, const Landmark& landmark,
-                            const SensorSnapshot& sensor) const;
+                            const Shot& shot) const;
   void believe(const SpatialPose& pose, Stamp stamp);
 
   LandmarkMap map_;

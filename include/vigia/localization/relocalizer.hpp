@@ -42,7 +42,7 @@ struct Sweep {
   /// The discs, at most a few per landmark. The biases of readings are drawn anew for each look.
   std::vector<EllipseObservation> sightings;
   /// Every direction that was searched, with a find or without one.
-  std::vector<SensorSnapshot> views;
+  std::vector<Shot> views;
 };
 
 enum class RelocalizationStatus {
@@ -98,8 +98,7 @@ class Relocalizer {
   static std::set<LandmarkId> landmarks_of(const std::vector<Match>& matches);
   bool plausible(const Match& match, const Pose2& pose) const;
   int missed(const Hypothesis& hypothesis, const Sweep& sweep) const;
-  bool should_be_seen(const Landmark& landmark, const Pose2& pose,
-                      const SensorSnapshot& view) const;
+  bool should_be_seen(const Landmark& landmark, const Pose2& pose, const Shot& view) const;
   Eigen::Matrix3d pixel_covariance(const EllipseObservation& sighting) const;
 
   LandmarkMap map_;
