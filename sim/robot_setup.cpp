@@ -112,10 +112,7 @@ void read_sensor(MapReader sensor, SensorNoise& noise) {
 }  // namespace
 
 Rig RobotSetup::rig() const {
-  Camera camera;
-  camera.mount = robot.head;
-  camera.optics = zoom;
-  return {{camera}};
+  return head_rig(robot.head, zoom);
 }
 
 RobotSetup read_robot_setup(MapReader& reader) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace vigia {
 namespace {
@@ -42,6 +43,13 @@ const Camera* Rig::find(CameraId id) const {
 const Camera& Rig::at(CameraId id) const {
   if (const Camera* camera = find(id)) return *camera;
   throw std::out_of_range("the rig has no camera " + std::to_string(id));
+}
+
+Rig head_rig(const HeadGeometry& geometry, Optics optics) {
+  Camera camera;
+  camera.mount = geometry;
+  camera.optics = std::move(optics);
+  return {{std::move(camera)}};
 }
 
 }  // namespace vigia

@@ -79,7 +79,7 @@ void DriveScorer::on_start(const mission::MissionSetup& setup, std::uint64_t see
   impl_->score.primary = setup.primary;
   for (std::size_t i = 0; i < setup.localizers.size(); ++i)
     impl_->sums.emplace_back(
-        PosteriorBound(setup.prior.covariance, setup.robot.robot.head, setup.robot.robot.sensor));
+        PosteriorBound(setup.prior.covariance, setup.on_ground(), setup.robot.robot.sensor));
   impl_->last_zoom_mm = setup.robot.initial_zoom_mm;
 }
 

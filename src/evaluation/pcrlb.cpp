@@ -8,9 +8,9 @@
 
 namespace vigia::evaluation {
 
-PosteriorBound::PosteriorBound(const Eigen::Matrix3d& prior, const HeadGeometry& geometry,
+PosteriorBound::PosteriorBound(const Eigen::Matrix3d& prior, const RigOnGround& on_ground,
                                const SensorNoise& noise)
-    : geometry_(geometry), noise_(noise) {
+    : on_ground_(on_ground), noise_(noise) {
   P_.topLeftCorner<3, 3>() = prior;
   begin_look(0);
 }
@@ -29,7 +29,7 @@ void PosteriorBound::predict(const Pose2& truth, const OdometryIncrement& increm
 
 bool PosteriorBound::update(const Pose2& truth, const Landmark& landmark, const Shot& shot,
                             const localization::LookBias& bias, const Eigen::Matrix3d& R) {
-  const auto image = localization::predict_disc(landmark, shot, geometry_, truth, bias);
+  const auto image = localization::predict_disc(landmark, shot, on_ground_, truth, bias);
   if (!image) return false;
   if (shot.look != look_) begin_look(shot.look);
   const localization::Matrix36 H = localization::state_jacobian(*image);
@@ -44,7 +44,7 @@ bool PosteriorBound::update(const Pose2& truth, const Landmark& landmark, const 
                             const localization::LookBias& bias,
                             const std::vector<localization::SeenPoint>& points) {
   const auto image =
-      localization::measure_points(points, landmark.wMl, shot, geometry_, truth, bias);
+      localization::measure_points(points, landmark.wMl, shot, on_ground_, truth, bias);
   if (!image) return false;
   if (shot.look != look_) begin_look(shot.look);
   using Matrix6 = Eigen::Matrix<double, 6, 6>;

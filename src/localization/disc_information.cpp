@@ -30,9 +30,9 @@ std::optional<Eigen::Matrix3d> DiscInformation::look_information(const Landmark&
                                                                  const Pose2& pose) const {
   const auto radius = disc_radius(landmark);
   if (!radius) return std::nullopt;
-  const Eigen::Vector3d p_r = to_isometry(pose).inverse() * landmark.centre_w();
+  const Eigen::Vector3d p_r = on_ground_.ground.place(pose).inverse() * landmark.centre_w();
   const Shot shot = aimed_shot(geometry_, zoom_, p_r, params_.radius_px / *radius);
-  const auto image = predict_disc(landmark, shot, geometry_, pose, {});
+  const auto image = predict_disc(landmark, shot, on_ground_, pose, {});
   if (!image || !fits(pinhole(shot), *image)) return std::nullopt;
 
   const double size_sigma = params_.pixel_sigma / (std::sqrt(2.0) * std::exp(image->z(2)));

@@ -163,12 +163,12 @@ std::optional<Ellipse> disc_image(const Landmark& landmark, const Intrinsics& in
 }
 
 std::optional<DiscMeasurement> predict_disc(const Landmark& landmark, const Shot& shot,
-                                            const HeadGeometry& geometry, const Pose2& pose,
+                                            const RigOnGround& on_ground, const Pose2& pose,
                                             const LookBias& bias) {
   const auto radius = disc_radius(landmark);
   if (!radius) return std::nullopt;
   const HeadAngles head{shot.head.pan + bias.pan, shot.head.tilt + bias.tilt};
-  const Eigen::Isometry3d wMc = to_isometry(pose) * camera_in_base(geometry, head);
+  const Eigen::Isometry3d wMc = on_ground.wMc(shot.camera, head, pose);
   const Disc disc = in_camera(landmark, *radius, wMc);
   if (!has_image(disc)) return std::nullopt;
   const PlaneEllipse image = perspective(disc);
@@ -179,7 +179,7 @@ std::optional<DiscMeasurement> predict_disc(const Landmark& landmark, const Shot
   const double px = pinhole(shot).px * std::exp(bias.log_focal);
   const double py = pinhole(shot).py * std::exp(bias.log_focal);
   const Eigen::Vector3d scale(px, py, 1.0);
-  const Eigen::Matrix<double, 6, 5> twists = camera_twists(geometry, head, wMc);
+  const Eigen::Matrix<double, 6, 5> twists = camera_twists(on_ground, shot.camera, head, pose, wMc);
   Eigen::Matrix<double, 3, 5> dz;
   for (Eigen::Index i = 0; i < 5; ++i) {
     const Eigen::Vector3d w_c = twists.col(i).tail<3>();

@@ -51,10 +51,10 @@ bool is_image(const EkfInput& input) {
 
 }  // namespace
 
-EkfLocalizer::EkfLocalizer(LandmarkMap map, const HeadGeometry& geometry, const EkfParams& params,
+EkfLocalizer::EkfLocalizer(LandmarkMap map, const RigOnGround& on_ground, const EkfParams& params,
                            std::optional<FloorPlan> plan)
     : map_(std::move(map)),
-      geometry_(geometry),
+      on_ground_(on_ground),
       params_(params),
       plan_(std::move(plan)),
       gate_(chi_square_quantile(params.gate_probability, kDof)),
@@ -122,7 +122,7 @@ UpdateResult EkfLocalizer::take_in(const Observation& observation) {
 
 EkfLocalizer::Match EkfLocalizer::match(const EllipseObservation& observation,
                                         const EkfState& at) const {
-  const AssociationModel model{map_, plan_ ? &*plan_ : nullptr, geometry_, params_.sensor, gate_};
+  const AssociationModel model{map_, plan_ ? &*plan_ : nullptr, on_ground_, params_.sensor, gate_};
   const Eigen::Vector3d z = measured_disc(observation);
   const Eigen::Matrix3d R = measurement_covariance(observation);
   const Association found = associate(model, at, observation, z, R);
@@ -145,7 +145,7 @@ EkfLocalizer::Match EkfLocalizer::match(const PointsObservation& observation,
                 seen_points(*landmark, observation, params_.centre_floor_px)};
   if (fix.points.empty()) return {{UpdateStatus::degenerate, std::nullopt, 0.0, 0}, std::nullopt};
   const UpdateResult result =
-      gate_points({geometry_, params_.sensor, params_.gate_probability}, at, fix);
+      gate_points({on_ground_, params_.sensor, params_.gate_probability}, at, fix);
   if (result.status != UpdateStatus::fused) return {result, std::nullopt};
   return {result, std::move(fix)};
 }
@@ -178,7 +178,7 @@ void EkfLocalizer::fuse(const Shot& shot, Event& event) const {
   ++window.images;
   window.last_image = shot.stamp;
   auto smoothed = smooth_look(window.start, inputs_of_look(event), guess_of_look(event),
-                              {geometry_, params_.sensor, params_.odometry}, params_.iterations,
+                              {on_ground_, params_.sensor, params_.odometry}, params_.iterations,
                               params_.converged);
   if (!smoothed) {
     window = {};

@@ -13,13 +13,10 @@ namespace vigia::localization {
 namespace {
 
 /// The planar prior as a pose in space: on the floor and upright, which it takes for certain.
-SpatialPose on_the_floor(const Prior& prior) {
+SpatialPose on_the_floor(const Prior& prior, const Ground& ground) {
   SpatialPose pose;
-  pose.wMr = to_isometry(prior.pose);
-  Eigen::Matrix<double, 6, 3> J = Eigen::Matrix<double, 6, 3>::Zero();
-  J(0, 0) = 1.0;
-  J(1, 1) = 1.0;
-  J(5, 2) = 1.0;
+  pose.wMr = ground.place(prior.pose);
+  const Eigen::Matrix<double, 6, 3> J = ground.dplace_dpose(prior.pose);
   pose.covariance = J * prior.covariance * J.transpose();
   return pose;
 }
@@ -42,9 +39,9 @@ OdometryIncrement rest_of(const OdometryIncrement& u, Stamp stamp) {
 
 }  // namespace
 
-PatternFixLocalizer::PatternFixLocalizer(LandmarkMap map, const HeadGeometry& geometry,
+PatternFixLocalizer::PatternFixLocalizer(LandmarkMap map, const RigOnGround& on_ground,
                                          const PatternFixParams& params)
-    : map_(std::move(map)), geometry_(geometry), params_(params) {
+    : map_(std::move(map)), on_ground_(on_ground), params_(params) {
   reset(Stamp{}, Prior{});
 }
 
@@ -52,7 +49,7 @@ void PatternFixLocalizer::reset(Stamp stamp, const Prior& prior) {
   history_.clear();
   start_ = stamp;
   belief_ = Belief{};
-  believe(on_the_floor(prior), stamp);
+  believe(on_the_floor(prior, on_ground_.ground), stamp);
 }
 
 void PatternFixLocalizer::believe(const SpatialPose& pose, Stamp stamp) {
@@ -103,7 +100,7 @@ UpdateResult PatternFixLocalizer::take_in(const PointsObservation& observation) 
   if (fit->dof > 0 && chi2 > chi_square_quantile(params_.gate_probability, fit->dof))
     return {UpdateStatus::gated, result.landmark, result.nis, result.dof};
 
-  SpatialPose pose = robot_in_space(*landmark, *fit, shot, geometry_, params_.sensor);
+  SpatialPose pose = robot_in_space(*landmark, *fit, shot, on_ground_, params_.sensor);
   Stamp stamp = shot.stamp;
   for (const OdometryIncrement& u : history_) {
     if (u.to <= shot.stamp) continue;
@@ -118,7 +115,7 @@ UpdateResult PatternFixLocalizer::take_in(const PointsObservation& observation) 
 const FittedPose* PatternFixLocalizer::upright(const PointsPose& solved, const Landmark& landmark,
                                                const Shot& shot) const {
   const auto stands = [&](const FittedPose& fit) {
-    const SpatialPose pose = robot_in_space(landmark, fit, shot, geometry_, params_.sensor);
+    const SpatialPose pose = robot_in_space(landmark, fit, shot, on_ground_, params_.sensor);
     return pose.wMr.linear()(2, 2) > std::cos(params_.max_slope);
   };
   const bool pose_stands = stands(solved.pose);

@@ -52,12 +52,12 @@ std::optional<Eigen::Matrix3d> PointsInformation::look_information(const Landmar
   double reach = 0.0;
   for (const LandmarkPoint& point : model)
     reach = std::max(reach, point.centre_l.norm() + point.radius_m);
-  const Eigen::Vector3d p_r = to_isometry(pose).inverse() * landmark.centre_w();
+  const Eigen::Vector3d p_r = on_ground_.ground.place(pose).inverse() * landmark.centre_w();
   const Shot shot = aimed_shot(geometry_, zoom_, p_r, reach, params_.fill);
-  const Eigen::Isometry3d wMc = to_isometry(pose) * camera_in_base(geometry_, shot.head);
+  const Eigen::Isometry3d wMc = on_ground_.wMc(shot.camera, shot.head, pose);
   if (!fits(model, pinhole(shot), wMc.inverse() * landmark.wMl)) return std::nullopt;
   const auto measured =
-      measure_points(points_of_look(model, params_), landmark.wMl, shot, geometry_, pose, {});
+      measure_points(points_of_look(model, params_), landmark.wMl, shot, on_ground_, pose, {});
   if (!measured) return std::nullopt;
 
   SensorNoise averaged = params_.sensor;

@@ -15,8 +15,8 @@ Landmark outline_of(const Landmark& landmark) {
 
 /// Of the landmark's outline.
 std::optional<Ellipse> expected_image(const Shot& shot, const Belief& belief,
-                                      const Landmark& landmark, const HeadGeometry& head) {
-  const Eigen::Isometry3d wMc = to_isometry(belief.pose) * camera_in_base(head, shot.head);
+                                      const Landmark& landmark, const RigOnGround& on_ground) {
+  const Eigen::Isometry3d wMc = on_ground.wMc(shot.camera, shot.head, belief.pose);
   return localization::disc_image(outline_of(landmark), pinhole(shot), wMc);
 }
 
@@ -37,12 +37,12 @@ PointsObservation observed(const tracking::PointsFeature& feature, const Shot& s
 
 }  // namespace
 
-Watcher::Watcher(const std::string& tracker, const LandmarkMap& map, HeadGeometry head,
+Watcher::Watcher(const std::string& tracker, const LandmarkMap& map, RigOnGround on_ground,
                  SensorNoise noise)
     : tracker_(tracking::make_ellipse_tracker(tracker)),
       patterns_(tracker_of<PatternShape>("pattern", map)),
       tags_(tracker_of<TagShape>("tag", map)),
-      head_(std::move(head)),
+      on_ground_(std::move(on_ground)),
       noise_(noise) {}
 
 tracking::PointTracker* Watcher::point_tracker(const Landmark& landmark) const {
@@ -53,8 +53,9 @@ tracking::PointTracker* Watcher::point_tracker(const Landmark& landmark) const {
 
 std::optional<tracking::EllipsePrediction> Watcher::predict(const Shot& shot, const Belief& belief,
                                                             const Landmark& landmark) const {
-  const auto image = expected_image(shot, belief, landmark, head_);
-  const auto model = localization::predict_disc(outline_of(landmark), shot, head_, belief.pose, {});
+  const auto image = expected_image(shot, belief, landmark, on_ground_);
+  const auto model =
+      localization::predict_disc(outline_of(landmark), shot, on_ground_, belief.pose, {});
   if (!image || !model) return std::nullopt;
   const double angle =
       noise_.look_angle * noise_.look_angle + noise_.reading_angle * noise_.reading_angle;
@@ -72,7 +73,7 @@ std::optional<tracking::EllipsePrediction> Watcher::predict(const Shot& shot, co
 std::optional<tracking::PointsPrediction> Watcher::predict_points(
     const Shot& shot, const Belief& belief, const Landmark& landmark,
     const tracking::EllipsePrediction& outline) const {
-  const Eigen::Isometry3d wMc = to_isometry(belief.pose) * camera_in_base(head_, shot.head);
+  const Eigen::Isometry3d wMc = on_ground_.wMc(shot.camera, shot.head, belief.pose);
   const Eigen::Isometry3d cMl = wMc.inverse(Eigen::Isometry) * landmark.wMl;
   tracking::PointsPrediction prediction;
   prediction.landmark = landmark.id;
@@ -135,15 +136,15 @@ tracking::PointsFeature Watcher::watch_points(
 }
 
 void Watcher::settle(const Shot& shot, const Belief& belief, const Landmark& landmark) {
-  const auto image = expected_image(shot, belief, landmark, head_);
+  const auto image = expected_image(shot, belief, landmark, on_ground_);
   settled_ = image ? std::optional(Eigen::Vector2d(image->u, image->v)) : std::nullopt;
 }
 
 std::optional<ImageMotion> Watcher::motion(const Shot& from, const Belief& belief_from,
                                            const Shot& to, const Belief& belief_to,
                                            const Landmark& landmark) const {
-  const auto first = expected_image(from, belief_from, landmark, head_);
-  const auto second = expected_image(to, belief_to, landmark, head_);
+  const auto first = expected_image(from, belief_from, landmark, on_ground_);
+  const auto second = expected_image(to, belief_to, landmark, on_ground_);
   if (!first || !second) return std::nullopt;
   return ImageMotion{{second->u - first->u, second->v - first->v}, second->a / first->a};
 }

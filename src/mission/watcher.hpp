@@ -32,7 +32,8 @@ struct ImageMotion {
 class Watcher {
  public:
   /// @p tracker: of discs. Patterns and tags of @p map have their own.
-  Watcher(const std::string& tracker, const LandmarkMap& map, HeadGeometry head, SensorNoise noise);
+  Watcher(const std::string& tracker, const LandmarkMap& map, RigOnGround on_ground,
+          SensorNoise noise);
 
   /// Acquires or tracks @p landmark in @p frame. @p request is not none.
   Sighting watch(const imaging::Frame& frame, servo::TrackRequest request, const Shot& shot,
@@ -70,7 +71,7 @@ class Watcher {
   std::unique_ptr<tracking::EllipseTracker> tracker_;
   std::unique_ptr<tracking::PointTracker> patterns_;  ///< null when the map has none
   std::unique_ptr<tracking::PointTracker> tags_;      ///< null when the map has none
-  HeadGeometry head_;
+  RigOnGround on_ground_;
   SensorNoise noise_;
   imaging::Canvas canvas_;
   std::optional<Eigen::Vector2d> settled_;

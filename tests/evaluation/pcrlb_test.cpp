@@ -20,9 +20,9 @@ TEST(PosteriorBound, EqualsTheCovarianceOfAFilterThatSitsOnTheTruth) {
   params.odometry = drive.noise.odometry;
   params.centre_floor_px = 0.0;
   params.size_floor = 0.0;
-  localization::EkfLocalizer ekf(map, drive.geometry, params);
+  localization::EkfLocalizer ekf(map, {head_rig(drive.geometry), {}}, params);
   ekf.reset({}, {drive.start, drive.prior.covariance});
-  PosteriorBound bound(drive.prior.covariance, drive.geometry, drive.noise.sensor);
+  PosteriorBound bound(drive.prior.covariance, {head_rig(drive.geometry), {}}, drive.noise.sensor);
   RandomStream random(1, "unused");
   Pose2 before = drive.start;
   for (const DriveStep& step : drive.steps) {

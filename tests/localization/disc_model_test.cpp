@@ -96,15 +96,15 @@ Case random_case(RandomStream& random, double kdu) {
   return c;
 }
 
-Eigen::Vector3d predicted_z(const Case& c, const HeadGeometry& geometry,
+Eigen::Vector3d predicted_z(const Case& c, const RigOnGround& on_ground,
                             const Eigen::Matrix<double, 6, 1>& step) {
   const Pose2 pose{c.pose.x + step(0), c.pose.y + step(1), c.pose.theta + step(2)};
   const LookBias bias{c.bias.pan + step(3), c.bias.tilt + step(4), c.bias.log_focal + step(5)};
-  return predict_disc(c.landmark, c.shot, geometry, pose, bias)->z;
+  return predict_disc(c.landmark, c.shot, on_ground, pose, bias)->z;
 }
 
-void expect_jacobians_match(const Case& c, const HeadGeometry& geometry) {
-  const auto predicted = predict_disc(c.landmark, c.shot, geometry, c.pose, c.bias);
+void expect_jacobians_match(const Case& c, const RigOnGround& on_ground) {
+  const auto predicted = predict_disc(c.landmark, c.shot, on_ground, c.pose, c.bias);
   ASSERT_TRUE(predicted);
   Eigen::Matrix<double, 3, 6> analytic;
   analytic << predicted->dz_dpose, predicted->dz_dbias;
@@ -113,7 +113,7 @@ void expect_jacobians_match(const Case& c, const HeadGeometry& geometry) {
     Eigen::Matrix<double, 6, 1> step = Eigen::Matrix<double, 6, 1>::Zero();
     step(i) = kStep;
     const Eigen::Vector3d numeric =
-        (predicted_z(c, geometry, step) - predicted_z(c, geometry, -step)) / (2.0 * kStep);
+        (predicted_z(c, on_ground, step) - predicted_z(c, on_ground, -step)) / (2.0 * kStep);
     for (Eigen::Index row = 0; row < 3; ++row)
       EXPECT_NEAR(analytic(row, i), numeric(row), 1e-6 * (1.0 + std::abs(numeric(row))))
           << "row " << row << ", column " << i;
@@ -142,8 +142,37 @@ TEST(DiscModel, JacobiansEqualFiniteDifferencesAtRandomViews) {
   geometry.camera_offset_h = {0.05, -0.02, 0.03};
   for (int i = 0; i < 200; ++i) {
     const double kdu = i % 3 == 0 ? 0.0 : random.uniform(-0.05, 0.1);
-    expect_jacobians_match(random_case(random, kdu), geometry);
+    expect_jacobians_match(random_case(random, kdu), {head_rig(geometry), {}});
   }
+}
+
+TEST(DiscModel, JacobiansEqualFiniteDifferencesOnASlope) {
+  RandomStream random(3, "slope");
+  // The ground turns about the spot where the robot stands, so that the disc stays in view.
+  const Eigen::Matrix3d tilt =
+      Eigen::AngleAxisd(0.05, Eigen::Vector3d(0.6, 0.8, 0.0)).toRotationMatrix();
+  for (int i = 0; i < 100; ++i) {
+    const Case c = random_case(random, 0.03);
+    const Eigen::Vector3d stand(c.pose.x, c.pose.y, 0.0);
+    Eigen::Isometry3d wMg = Eigen::Isometry3d::Identity();
+    wMg.linear() = tilt;
+    wMg.translation() = stand - tilt * stand;
+    expect_jacobians_match(c, {Rig{}, Ground(wMg)});
+  }
+}
+
+TEST(DiscModel, OfAFixedCameraIsBlindToTheHead) {
+  Case c;
+  c.landmark = disc(1, 3.0, 0.0, 1.0, 180.0);
+  FixedMount mount;
+  mount.rMc = camera_in_base(HeadGeometry{}, {0.05, -0.02});
+  Camera camera;
+  camera.mount = mount;
+  const RigOnGround on_ground{{{camera}}, {}};
+  expect_jacobians_match(c, on_ground);
+  const auto predicted = predict_disc(c.landmark, c.shot, on_ground, c.pose, c.bias);
+  ASSERT_TRUE(predicted);
+  EXPECT_TRUE(predicted->dz_dbias.leftCols<2>().isZero());
 }
 
 TEST(DiscModel, ImageEqualsTheConicThroughTheProjectedRim) {

@@ -320,7 +320,8 @@ TEST(Ekf, TracksASimulatedDriveWithAlmostEveryFrameFused) {
   const test::Drive drive = simulate_drive({}, 1);
   EkfParams params;
   params.odometry = drive.noise.odometry;
-  EkfLocalizer ekf(test::room_landmarks(), drive.geometry, params, test::room_plan());
+  EkfLocalizer ekf(test::room_landmarks(), {head_rig(drive.geometry), {}}, params,
+                   test::room_plan());
   OdometryLocalizer odometry(drive.noise.odometry);
   ekf.reset({}, drive.prior);
   odometry.reset({}, drive.prior);

@@ -34,7 +34,7 @@ PointsObservation seen_from(const Eigen::Isometry3d& wMr, const Landmark& landma
 }
 
 PatternFixLocalizer localizer(const PatternFixParams& params = {}) {
-  return PatternFixLocalizer(LandmarkMap({kFixPattern}), kHead, params);
+  return PatternFixLocalizer(LandmarkMap({kFixPattern}), {head_rig(kHead), {}}, params);
 }
 
 TEST(PatternFix, OneImageOnARampGivesTheWholePose) {
@@ -140,7 +140,7 @@ TEST(PatternFix, CountsWhatItCannotUse) {
   RandomStream random(1, "unused");
   const Landmark tag = test::tag(7, 6.0, 2.9, 2.15, 180.0);
   const Landmark frontal = test::pattern(8, 6.0, 2.4, 1.3, 180.0);
-  PatternFixLocalizer fix(LandmarkMap({kFixPattern, tag, frontal}), kHead, {});
+  PatternFixLocalizer fix(LandmarkMap({kFixPattern, tag, frontal}), {head_rig(kHead), {}}, {});
   EXPECT_EQ(fix.update(EllipseObservation{}).status, UpdateStatus::unsupported);
   const Eigen::Isometry3d wMr = to_isometry({3.2, 2.4, 0.1});
   EXPECT_EQ(fix.update(seen_from(wMr, tag, {}, 0.0, random)).status, UpdateStatus::unsupported);

@@ -73,7 +73,7 @@ bool is_near(const Pose2& a, const Pose2& b) {
 }
 
 Relocalizer relocalizer_for(const SweepMaker& maker) {
-  return Relocalizer(maker.map, maker.plan, maker.geometry, {});
+  return Relocalizer(maker.map, maker.plan, {head_rig(maker.geometry), {}}, {});
 }
 
 /// How often the relocalizer was right, wrong though sure, or unsure, over random poses from which

@@ -22,7 +22,7 @@ namespace vigia::evaluation {
 class PosteriorBound {
  public:
   /// @p prior: covariance of (x, y, θ) at the start. @p noise: of the head's and zoom's readings.
-  PosteriorBound(const Eigen::Matrix3d& prior, const HeadGeometry& geometry,
+  PosteriorBound(const Eigen::Matrix3d& prior, const RigOnGround& on_ground,
                  const SensorNoise& noise);
 
   /// Moves from the true pose @p truth by the true @p increment, whose odometry has the covariance
@@ -49,7 +49,7 @@ class PosteriorBound {
  private:
   void begin_look(LookId look);
 
-  HeadGeometry geometry_;
+  RigOnGround on_ground_;
   SensorNoise noise_;
   LookId look_ = 0;
   Eigen::Matrix<double, 6, 6> P_ = Eigen::Matrix<double, 6, 6>::Zero();

@@ -66,7 +66,7 @@ struct EkfParams {
 class EkfLocalizer final : public Localizer {
  public:
   /// @p plan, when given, rules out landmarks behind walls.
-  EkfLocalizer(LandmarkMap map, const HeadGeometry& geometry, const EkfParams& params,
+  EkfLocalizer(LandmarkMap map, const RigOnGround& on_ground, const EkfParams& params,
                std::optional<FloorPlan> plan = std::nullopt);
 
   std::string_view name() const override { return "ekf"; }
@@ -124,7 +124,7 @@ class EkfLocalizer final : public Localizer {
   Eigen::Matrix3d measurement_covariance(const EllipseObservation& observation) const;
 
   LandmarkMap map_;
-  HeadGeometry geometry_;
+  RigOnGround on_ground_;
   EkfParams params_;
   std::optional<FloorPlan> plan_;
   double gate_;

@@ -29,7 +29,7 @@ struct PatternFixParams {
 /// tags.
 class PatternFixLocalizer final : public Localizer {
  public:
-  PatternFixLocalizer(LandmarkMap map, const HeadGeometry& geometry,
+  PatternFixLocalizer(LandmarkMap map, const RigOnGround& on_ground,
                       const PatternFixParams& params);
 
   std::string_view name() const override { return "pattern_fix"; }
@@ -49,7 +49,7 @@ class PatternFixLocalizer final : public Localizer {
   void believe(const SpatialPose& pose, Stamp stamp);
 
   LandmarkMap map_;
-  HeadGeometry geometry_;
+  RigOnGround on_ground_;
   PatternFixParams params_;
   Belief belief_;
   Stamp start_;

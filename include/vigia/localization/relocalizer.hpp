@@ -63,7 +63,7 @@ struct Relocalization {
 /// landmarks, and discs have a front.
 class Relocalizer {
  public:
-  Relocalizer(LandmarkMap map, FloorPlan plan, const HeadGeometry& geometry,
+  Relocalizer(LandmarkMap map, FloorPlan plan, const RigOnGround& on_ground,
               const RelocalizerParams& params);
 
   /// With a @p prior one sighting is enough, and poses it holds unlikely weigh less; without, at
@@ -103,7 +103,7 @@ class Relocalizer {
 
   LandmarkMap map_;
   FloorPlan plan_;
-  HeadGeometry geometry_;
+  RigOnGround on_ground_;
   RelocalizerParams params_;
   double gate_;
 };

@@ -16,7 +16,7 @@ namespace vigia::localization {
 /// holds the fit's own and, to first order, the errors of the readings (constant and white part)
 /// and of the focal length; they make it larger in one image and are common to all of a look.
 SpatialPose robot_in_space(const Landmark& landmark, const FittedPose& fit, const Shot& shot,
-                           const HeadGeometry& geometry, const SensorNoise& noise);
+                           const RigOnGround& on_ground, const SensorNoise& noise);
 
 /// Height and attitude of the floor under the robot, as a pose in space shows them.
 struct FloorAttitude {
