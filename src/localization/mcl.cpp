@@ -56,12 +56,16 @@ std::uint64_t bin_of(const Pose2& pose, const MclParams& params) {
 }
 
 /// Whether a ray from the pose crosses any line in sight.
-bool ray_meets_line(const FieldMap& map, const Pose2& pose, double bearing) {
+bool ray_meets_line(const FieldMap& map, const Pose2& pose, double bearing,
+                    std::vector<LineCrossing>& scratch) {
   constexpr double kSight_m = 8.0;
-  std::vector<LineCrossing> crossings;
+  scratch.clear();
   const Eigen::Vector2d u = unit_vector(pose.theta + bearing);
-  for (const FieldLine& line : map.lines) cross_line(line, pose.position(), u, kSight_m, crossings);
-  return !crossings.empty();
+  for (const FieldLine& line : map.lines) {
+    cross_line(line, pose.position(), u, kSight_m, scratch);
+    if (!scratch.empty()) return true;
+  }
+  return false;
 }
 
 bool looks_at(const Pose2& pose, double bearing, const Eigen::Vector2d& target, double half_width) {
@@ -77,8 +81,10 @@ double log_agreement(const FieldMap& map, const FieldScan& scan, const Pose2& po
   const double gain = std::log(0.8);
   const double loss = std::log(0.2);
   double sum = 0.0;
+  std::vector<LineCrossing> scratch;
   for (const FieldPoint& point : scan.points)
-    sum += ray_meets_line(map, pose, std::atan2(point.p_r.y(), point.p_r.x())) ? gain : loss;
+    sum +=
+        ray_meets_line(map, pose, std::atan2(point.p_r.y(), point.p_r.x()), scratch) ? gain : loss;
   for (const ColourSighting& seen : scan.goals)
     for (const FieldGoal& goal : map.goals)
       if (goal.colour == seen.colour)
@@ -174,10 +180,12 @@ void Mcl::reset(Stamp stamp, const std::optional<Prior>& prior) {
   since_check_ = params_.check_every;
   narrow_start_ = prior.has_value();
   twin_weight_ = 0.0;
+  const int count = params_.method == MclParams::Method::as_described ? params_.min_particles
+                                                                      : params_.max_particles;
   if (prior)
-    sample_gaussian(*prior, params_.max_particles);
+    sample_gaussian(*prior, count);
   else
-    sample_uniform(params_.max_particles);
+    sample_uniform(count);
   if (model_->symmetric() && !prior) twin_weight_ = 0.5;
   belief_ = Belief{};
   belief_.stamp = stamp;
@@ -279,8 +287,10 @@ void Mcl::resample() {
   std::unordered_set<std::uint64_t> bins;
   for (const Particle& particle : particles_)
     if (particle.weight > 1e-6) bins.insert(bin_of(particle.pose, params_));
-  const int count = std::clamp(kld_size(bins.size(), params_.kld_error), params_.min_particles,
-                               params_.max_particles);
+  const bool fixed = params_.method == MclParams::Method::as_described;
+  const int count = fixed ? params_.min_particles
+                          : std::clamp(kld_size(bins.size(), params_.kld_error),
+                                       params_.min_particles, params_.max_particles);
   std::vector<Particle> chosen;
   chosen.reserve(static_cast<std::size_t>(count));
   const double step = 1.0 / count;

@@ -151,8 +151,10 @@ void conclude(const std::vector<MureaCell>& cells, const Resolution& resolution,
   double weights = 0.0;
   for (const MureaCell& cell : cells) {
     const Eigen::Vector3d d = off_by(cell.middle, best.middle);
-    if (d.head<2>().norm() > 0.5 || std::abs(d.z()) > 0.35)
-      fix.runner_up = std::max(fix.runner_up, cell.votes);
+    if ((d.head<2>().norm() > 0.5 || std::abs(d.z()) > 0.35) && cell.votes > fix.runner_up) {
+      fix.runner_up = cell.votes;
+      fix.second = Pose2::from_vector(cell.middle);
+    }
     if (d.head<2>().norm() > within_m || std::abs(d.z()) > within_rad) continue;
     const double weight = std::pow(cell.votes / best.votes, 16.0);
     sum += weight * d;

@@ -60,6 +60,10 @@ void MureaLocalizer::accept(const MureaFix& fix, bool global) {
   if (!global) return;
   const bool ambiguous = fix.runner_up > params_.ambiguous_share * fix.votes;
   belief_.status = ambiguous ? BeliefStatus::ambiguous : BeliefStatus::tracking;
+  if (!ambiguous) return;
+  const double share = fix.votes / (fix.votes + fix.runner_up);
+  belief_.hypotheses = {{fix.pose, fix.covariance, share},
+                        {fix.second, fix.covariance, 1.0 - share}};
 }
 
 void MureaLocalizer::update(const FieldScan& scan) {

@@ -109,7 +109,7 @@ TEST(FieldMatcher, OnASymmetricFieldEveryAnswerHasAnEqualTwin) {
 TEST(FieldDrive, OnASymmetricFieldWithoutPriorNoBeliefIsEverConfident) {
   FieldDriveParams params;
   params.prior = false;
-  params.count = 60;
+  params.count = 25;
   params.frames.goals = false;
   const std::vector<FieldLocalizer> all{FieldLocalizer::field_grid, FieldLocalizer::mcl,
                                         FieldLocalizer::murea};
@@ -153,7 +153,7 @@ TEST(Murea, ShortOfCellsItGivesACoarserAnswer) {
   const FieldFrame frame = draw_field_frame(map, {}, {1.0, 1.0, 0.5}, random);
   localization::MureaParams params;
   const auto fine = localization::Murea(model, params).locate(frame.scan);
-  params.cell_budget = 6000;
+  params.cell_budget = 15000;
   const auto coarse = localization::Murea(model, params).locate(frame.scan);
   EXPECT_TRUE(coarse.found);
   EXPECT_GT(coarse.cell_m, fine.cell_m);

@@ -35,7 +35,8 @@ struct MureaFix {
   Pose2 pose;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of the winning cells' spread
   double votes = 0.0;                                    ///< of the best cell
-  double runner_up = 0.0;  ///< of the best cell elsewhere (farther than half a metre or 20°)
+  double runner_up = 0.0;  ///< votes of the best cell farther than half a metre or 20° …
+  Pose2 second;            ///< … and its middle
   double cell_m = 0.0;     ///< resolution reached
   double cell_deg = 0.0;
   int levels = 0;
