@@ -14,23 +14,25 @@ namespace {
 constexpr double kSettled_s = 0.5;
 
 report::Overlay overlay_of(const mission::Tick& tick) {
+  const mission::AttentionTick& attention = tick.attention;
   report::Overlay overlay;
-  overlay.predicted = tick.predicted;
-  if (tick.observation != nullptr) {
-    const Intrinsics& camera = sensor_of(*tick.observation).intrinsics;
-    if (const auto* disc = std::get_if<EllipseObservation>(tick.observation))
+  overlay.predicted = attention.predicted;
+  for (const Observation& observation : tick.estimator.observations) {
+    const Intrinsics& camera = sensor_of(observation).intrinsics;
+    if (const auto* disc = std::get_if<EllipseObservation>(&observation))
       overlay.measured = disc->ellipse;
-    if (const auto* seen = std::get_if<PointsObservation>(tick.observation))
+    if (const auto* seen = std::get_if<PointsObservation>(&observation))
       for (const LabelledPoint& point : seen->points) overlay.points.push_back(point.uv);
     overlay.principal_point = Eigen::Vector2d(camera.u0, camera.v0);
   }
   overlay.lines.push_back(
-      fmt::format("t = {:.2f} s   {}", tick.now.seconds(), to_string(tick.gaze)));
-  if (tick.order)
+      fmt::format("t = {:.2f} s   {}", tick.estimator.now.seconds(), to_string(attention.gaze)));
+  if (attention.order)
     overlay.lines.push_back(fmt::format("landmark {}   look {}   zoom {:.1f} mm",
-                                        tick.order->landmark, tick.look, tick.head.zoom_mm));
-  if (tick.centring_px)
-    overlay.lines.push_back(fmt::format("off centre {:.2f} px", *tick.centring_px));
+                                        attention.order->landmark, attention.look,
+                                        tick.head.zoom_mm));
+  if (attention.centring_px)
+    overlay.lines.push_back(fmt::format("off centre {:.2f} px", *attention.centring_px));
   return overlay;
 }
 
@@ -43,10 +45,13 @@ void FrameAlbum::on_start(const mission::MissionSetup& setup, std::uint64_t /*se
 
 void FrameAlbum::on_tick(const mission::Tick& tick) {
   if (static_cast<int>(pictures_.size()) >= count_) return;
-  if (tick.observation == nullptr || tick.tracked_s < kSettled_s || tick.station_m < due_m_) return;
+  if (tick.estimator.observations.empty() || tick.attention.tracked_s < kSettled_s ||
+      tick.station_m < due_m_)
+    return;
   due_m_ = tick.station_m + spacing_m_;
-  Picture picture{fmt::format("frame_{:03}_t{:06.2f}s.png", pictures_.size(), tick.now.seconds()),
-                  imaging::colour_image(tick.frame)};
+  Picture picture{
+      fmt::format("frame_{:03}_t{:06.2f}s.png", pictures_.size(), tick.estimator.now.seconds()),
+      imaging::colour_image(*tick.frame)};
   report::draw_overlay(picture.image, overlay_of(tick));
   pictures_.push_back(std::move(picture));
 }

@@ -18,9 +18,9 @@ void Progress::on_tick(const mission::Tick& tick) {
   const int percent = static_cast<int>(100.0 * tick.station_m / length_m_);
   if (percent == percent_) return;
   percent_ = percent;
-  const double sigma = tick.localizers[tick.primary].belief->position_sigma();
-  fmt::print(stderr, "\r{:3} %  t = {:6.1f} s  σ = {:5.1f} cm  {:<8}", percent, tick.now.seconds(),
-             100.0 * sigma, to_string(tick.gaze));
+  const double sigma = tick.estimator.primary_belief().position_sigma();
+  fmt::print(stderr, "\r{:3} %  t = {:6.1f} s  σ = {:5.1f} cm  {:<8}", percent,
+             tick.estimator.now.seconds(), 100.0 * sigma, to_string(tick.attention.gaze));
   std::fflush(stderr);
 }
 

@@ -24,14 +24,14 @@ int& count_of(LocalizerScore& score, localization::UpdateStatus status) {
 
 /// What the image taught at best.
 void bound_by(const Observation& observation, const Landmark& landmark,
-              const sim::RobotTruth& truth, PosteriorBound& bound) {
-  const auto& angle = truth.look_angle_error;
-  const localization::LookBias bias{angle.pan, angle.tilt, truth.look_log_focal_error};
+              const mission::ExposureTruth& truth, PosteriorBound& bound) {
   const SensorSnapshot& sensor = sensor_of(observation);
   if (const auto* disc = std::get_if<EllipseObservation>(&observation))
-    bound.update(truth.pose, landmark, sensor, bias, localization::measured_disc_covariance(*disc));
+    bound.update(truth.pose, landmark, sensor, truth.bias,
+                 localization::measured_disc_covariance(*disc));
   if (const auto* points = std::get_if<PointsObservation>(&observation))
-    bound.update(truth.pose, landmark, sensor, bias, localization::seen_points(landmark, *points));
+    bound.update(truth.pose, landmark, sensor, truth.bias,
+                 localization::seen_points(landmark, *points));
 }
 
 }  // namespace
@@ -62,10 +62,12 @@ struct DriveScorer::Impl {
   double last_sigma_m = 0.0;
   double lost_since_s = 0.0;
 
-  void score_localizer(const mission::Tick& tick, std::size_t i);
-  void score_look(const mission::Tick& tick, LocalizerSums& sum, double nees, double squared);
+  void score_localizer(const mission::EstimatorTick& tick, std::size_t i);
+  /// Counts what became of the observations; the look of the last one that was fused.
+  std::optional<LookId> score_updates(const mission::EstimatorTick& tick, std::size_t i);
+  static void score_look(LookId look, LocalizerSums& sum, double nees, double squared);
   void score_perception(const mission::Tick& tick);
-  void score_centring(const mission::Tick& tick);
+  void score_centring(const mission::AttentionTick& attention);
 };
 
 DriveScorer::DriveScorer() : impl_(std::make_unique<Impl>()) {}
@@ -84,27 +86,39 @@ void DriveScorer::on_start(const mission::MissionSetup& setup, std::uint64_t see
 }
 
 void DriveScorer::on_tick(const mission::Tick& tick) {
-  for (std::size_t i = 0; i < tick.localizers.size(); ++i) impl_->score_localizer(tick, i);
+  for (std::size_t i = 0; i < impl_->sums.size(); ++i) impl_->score_localizer(tick.estimator, i);
   impl_->score_perception(tick);
   ++impl_->ticks;
 }
 
-void DriveScorer::Impl::score_localizer(const mission::Tick& tick, std::size_t i) {
+std::optional<LookId> DriveScorer::Impl::score_updates(const mission::EstimatorTick& tick,
+                                                       std::size_t i) {
   LocalizerSums& sum = sums[i];
+  const auto& updates = tick.localizers[i].updates;
+  std::optional<LookId> look;
+  for (std::size_t k = 0; k < updates.size(); ++k) {
+    ++count_of(sum.score, updates[k].status);
+    if (updates[k].status != localization::UpdateStatus::fused) continue;
+    if (updates[k].landmark)
+      bound_by(tick.observations[k], *setup->world.landmarks.find(*updates[k].landmark),
+               tick.truth->exposures[k], sum.bound);
+    look = sensor_of(tick.observations[k]).look;
+  }
+  return look;
+}
+
+void DriveScorer::Impl::score_localizer(const mission::EstimatorTick& tick, std::size_t i) {
+  LocalizerSums& sum = sums[i];
+  const mission::GroundTruth& truth = *tick.truth;
   const Belief& belief = *tick.localizers[i].belief;
-  const auto& update = tick.localizers[i].update;
-  const double turned = wrap_angle(tick.truth.pose.theta - tick.true_pose_before.theta);
-  const auto u = chord_increment(tick.true_pose_before, tick.truth.pose, turned, tick.odometry.from,
-                                 tick.odometry.to);
-  sum.bound.predict(tick.true_pose_before, u, control_covariance(u, setup->robot.robot.odometry));
-  const bool fused = update && update->status == localization::UpdateStatus::fused;
-  if (update) ++count_of(sum.score, update->status);
-  if (fused && update->landmark)
-    bound_by(*tick.observation, *setup->world.landmarks.find(*update->landmark),
-             tick.truth_at_exposure, sum.bound);
-  const Eigen::Vector3d error = difference(belief.pose, tick.truth.pose);
+  const double turned = wrap_angle(truth.pose.theta - truth.pose_before.theta);
+  const auto u =
+      chord_increment(truth.pose_before, truth.pose, turned, tick.odometry.from, tick.odometry.to);
+  sum.bound.predict(truth.pose_before, u, control_covariance(u, setup->robot.robot.odometry));
+  const auto fused = score_updates(tick, i);
+  const Eigen::Vector3d error = difference(belief.pose, truth.pose);
   const double squared = error.head<2>().squaredNorm();
-  const double nees = evaluation::nees({tick.truth.pose, belief.pose, belief.covariance});
+  const double nees = evaluation::nees({truth.pose, belief.pose, belief.covariance});
   sum.squared_position += squared;
   sum.squared_heading += error.z() * error.z();
   sum.nees += nees;
@@ -115,53 +129,53 @@ void DriveScorer::Impl::score_localizer(const mission::Tick& tick, std::size_t i
   const bool says_lost = belief.status == BeliefStatus::lost;
   if (says_lost) sum.score.lost_s += setup->tick_s;
   watch_for_loss(sum.score.lost, tick.now.seconds(), says_lost, std::sqrt(squared));
-  if (fused) score_look(tick, sum, nees, squared);
+  if (fused) score_look(*fused, sum, nees, squared);
 }
 
-void DriveScorer::Impl::score_look(const mission::Tick& tick, LocalizerSums& sum, double nees,
-                                   double squared) {
+void DriveScorer::Impl::score_look(LookId look, LocalizerSums& sum, double nees, double squared) {
   auto& looks = sum.score.looks;
-  if (looks.empty() || looks.back().look != tick.look) looks.push_back({tick.look});
-  looks.back() = {tick.look, nees, squared, sum.bound.covariance().topLeftCorner<2, 2>().trace()};
+  if (looks.empty() || looks.back().look != look) looks.push_back({look});
+  looks.back() = {look, nees, squared, sum.bound.covariance().topLeftCorner<2, 2>().trace()};
 }
 
 void DriveScorer::Impl::score_perception(const mission::Tick& tick) {
   PerceptionScore& p = score.perception;
-  score_centring(tick);
-  if (tick.stopped_to_look) {
+  score_centring(tick.attention);
+  if (tick.attention.stopped_to_look) {
     p.stopped_s += setup->tick_s;
     if (!stopped) ++p.stops;
   }
-  stopped = tick.stopped_to_look;
+  stopped = tick.attention.stopped_to_look;
   const bool zoom_moves = std::abs(tick.truth.zoom_mm - last_zoom_mm) > 1e-9;
   if (zoom_moves && !zooming) ++p.zoom_changes;
   zooming = zoom_moves;
   last_zoom_mm = tick.truth.zoom_mm;
   p.pan_travel_rad += std::abs(tick.truth.head.pan - last_pan);
   last_pan = tick.truth.head.pan;
-  const double sigma = tick.localizers[tick.primary].belief->position_sigma();
+  const double sigma = tick.estimator.primary_belief().position_sigma();
   const auto& limits = setup->look.trigger;
   if (sigma > limits.limit_1_m && last_sigma_m <= limits.limit_1_m) ++p.over_limit_1;
   if (sigma > limits.limit_2_m && last_sigma_m <= limits.limit_2_m) ++p.over_limit_2;
   last_sigma_m = sigma;
 }
 
-void DriveScorer::Impl::score_centring(const mission::Tick& tick) {
-  if (!tick.centring_px || tick.tracked_s < kSettle_s) return;
+void DriveScorer::Impl::score_centring(const mission::AttentionTick& attention) {
+  if (!attention.centring_px || attention.tracked_s < kSettle_s) return;
   ++centred;
-  squared_centring += *tick.centring_px * *tick.centring_px;
-  score.perception.centring_max_px = std::max(score.perception.centring_max_px, *tick.centring_px);
+  const double off_px = *attention.centring_px;
+  squared_centring += off_px * off_px;
+  score.perception.centring_max_px = std::max(score.perception.centring_max_px, off_px);
 }
 
 void DriveScorer::on_event(const mission::Event& event) {
-  if (event.kind == "look") ++impl_->score.perception.looks;
-  if (event.kind == "target_lost") ++impl_->score.perception.target_losses;
+  if (event.kind == mission::EventKind::look) ++impl_->score.perception.looks;
+  if (event.kind == mission::EventKind::target_lost) ++impl_->score.perception.target_losses;
   RecoveryScore& recovery = impl_->score.recovery;
-  if (event.kind == "lost") {
+  if (event.kind == mission::EventKind::lost) {
     ++recovery.lost;
     impl_->lost_since_s = event.stamp.seconds();
   }
-  if (event.kind == "recovered") {
+  if (event.kind == mission::EventKind::recovered) {
     ++recovery.recovered;
     recovery.recovering_s += event.stamp.seconds() - impl_->lost_since_s;
   }

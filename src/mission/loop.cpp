@@ -3,6 +3,7 @@
 #include "localizer_params.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace vigia::mission {
@@ -15,6 +16,37 @@ Pose2 draw_start(const MissionSetup& setup, std::uint64_t seed) {
   const double dy = setup.start_sigma_m * stream.normal();
   const double dtheta = setup.start_sigma_rad * stream.normal();
   return {setup.start.x + dx, setup.start.y + dy, wrap_angle(setup.start.theta + dtheta)};
+}
+
+EventKind event_of(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::arrived:
+      return EventKind::arrived;
+    case Outcome::collided:
+      return EventKind::collided;
+    case Outcome::timeout:
+      return EventKind::timeout;
+    case Outcome::stuck:
+      return EventKind::stuck;
+  }
+  return EventKind::stuck;
+}
+
+EventKind event_of(servo::GazeEvent event) {
+  switch (event) {
+    case servo::GazeEvent::none:
+      break;
+    case servo::GazeEvent::acquired:
+      return EventKind::acquired;
+    case servo::GazeEvent::released:
+      return EventKind::released;
+    case servo::GazeEvent::lost:
+      return EventKind::target_lost;
+    case servo::GazeEvent::expired:
+      return EventKind::expired;
+  }
+  assert(false && "nothing happened");
+  return EventKind::expired;
 }
 
 /// How far from the principal point the feature lies, px.
@@ -48,22 +80,24 @@ Loop::Loop(const MissionSetup& setup, std::uint64_t seed, const std::vector<List
   for (const auto& name : setup.localizers) {
     if (name == setup.primary) primary_ = localizers_.size();
     localizers_.push_back(make_localizer(name, setup));
-    localizers_.back()->reset(now_, setup.prior);
+    localizers_.back()->reset(now(), setup.prior);
   }
-  localizer_ticks_.resize(localizers_.size());
+  tick_.estimator.localizers.resize(localizers_.size());
+  tick_.estimator.primary = primary_;
+  tick_.estimator.truth.emplace();
 }
 
 Outcome Loop::run() {
   for (Listener* listener : listeners_) listener->on_start(setup_, seed_);
-  tell("plan", {{"length_m", setup_.path.length()}}, {{"policy", setup_.look.policy}});
+  tell(EventKind::plan, {{"length_m", setup_.path.length()}}, {{"policy", setup_.look.policy}});
   std::optional<Outcome> end;
   while (!(end = outcome())) tick();
   Texts texts;
   if (*end == Outcome::collided)
     texts.emplace_back("with", simulator_.clearance_of_people() < 0.0 ? "person" : "building");
   const Pose2& pose = simulator_.robot().truth().pose;
-  tell(std::string(to_string(*end)), {{"x_m", pose.x}, {"y_m", pose.y}}, texts);
-  for (Listener* listener : listeners_) listener->on_finish(*end, now_);
+  tell(event_of(*end), {{"x_m", pose.x}, {"y_m", pose.y}}, texts);
+  for (Listener* listener : listeners_) listener->on_finish(*end, now());
   return *end;
 }
 
@@ -75,30 +109,36 @@ std::optional<Outcome> Loop::outcome() const {
     const Eigen::Vector2d off = simulator_.robot().truth().pose.position() - goal;
     return off.norm() <= setup_.goal_tolerance_m ? Outcome::arrived : Outcome::stuck;
   }
-  if (now_.seconds() >= setup_.timeout_s) return Outcome::timeout;
+  if (now().seconds() >= setup_.timeout_s) return Outcome::timeout;
   return std::nullopt;
+}
+
+void Loop::begin_tick() {
+  EstimatorTick& estimator = tick_.estimator;
+  estimator.now = estimator.now + dt_;
+  estimator.observations.clear();
+  estimator.truth->exposures.clear();
+  for (auto& localizer : estimator.localizers) localizer.updates.clear();
+  sighting_.reset();
+  tick_.activations.reset();
+  tick_.timing = {};
 }
 
 void Loop::tick() {
   const Stopwatch step;
-  timing_ = {};
   if (simulator_.kidnap()) {
     const Pose2& pose = simulator_.robot().truth().pose;
-    tell("kidnapped", {{"x_m", pose.x}, {"y_m", pose.y}, {"theta_rad", pose.theta}});
+    tell(EventKind::kidnapped, {{"x_m", pose.x}, {"y_m", pose.y}, {"theta_rad", pose.theta}});
   }
-  const Pose2 before = simulator_.robot().truth().pose;
+  begin_tick();
+  tick_.estimator.truth->pose_before = simulator_.robot().truth().pose;
   simulator_.advance(dt_);
-  now_ = now_ + dt_;
   predict();
 
   late_frames_.expose({simulator_.expose(), sensor_, simulator_.robot().truth()});
-  delivered_ = late_frames_.take(now_);
+  delivered_ = late_frames_.take(now());
   const ExposedFrame& shown = delivered_ ? *delivered_ : *late_frames_.newest();
   const TimedFrame frame(*shown.frame);
-  sighting_.reset();
-  observation_.reset();
-  activations_.reset();
-  for (auto& localizer_tick : localizer_ticks_) localizer_tick.update.reset();
   if (setup_.full_frames) imaging::grey_image(frame);
   // A frame of an earlier look says nothing of this one.
   const bool usable = delivered_ && delivered_->sensor.look == look_;
@@ -106,53 +146,60 @@ void Loop::tick() {
     recover(usable ? &frame : nullptr);
   } else {
     if (usable) watch(frame);
-    if (observation_) localize(*observation_);
+    if (observation() != nullptr) localize(*observation());
     plan();
     steer();
   }
+  tick_.timing.render = frame.render_ms();
+  tick_.timing.track -= std::min(tick_.timing.track, tick_.timing.render);
+  tick_.timing.step = step.elapsed_ms();
+  end_tick(shown);
+}
 
+void Loop::end_tick(const ExposedFrame& shown) {
+  EstimatorTick& estimator = tick_.estimator;
   for (std::size_t i = 0; i < localizers_.size(); ++i)
-    localizer_ticks_[i].belief = &localizers_[i]->belief();
-  timing_.render = frame.render_ms();
-  timing_.track -= std::min(timing_.track, timing_.render);
-  timing_.step = step.elapsed_ms();
+    estimator.localizers[i].belief = &localizers_[i]->belief();
+  tick_.truth = simulator_.robot().truth();
+  estimator.truth->pose = tick_.truth.pose;
+  const Observation* seen = observation();
+  if (seen != nullptr) {
+    const HeadAngles& angle = shown.truth.look_angle_error;
+    estimator.truth->exposures.push_back(
+        {shown.truth.stamp,
+         shown.truth.pose,
+         {angle.pan, angle.tilt, shown.truth.look_log_focal_error}});
+  }
+  AttentionTick& attention = tick_.attention;
+  attention.gaze = recovering_ ? GazeState::search : gaze_.state();
+  attention.order = gaze_.current();
+  attention.look = seen != nullptr ? sensor_of(*seen).look : look_;
+  attention.feature = sighting_ ? std::optional(sighting_->status) : std::nullopt;
+  attention.predicted = sighting_ ? sighting_->predicted : std::nullopt;
+  attention.centring_px.reset();
+  if (seen != nullptr && acquired_) attention.centring_px = off_centre(*seen);
+  attention.tracked_s = acquired_ ? (now() - *acquired_).seconds() : 0.0;
+  attention.stopped_to_look = stopped_to_look_;
+  tick_.station_m = pilot_.station();
+  tick_.frame = shown.frame.get();
+  for (Listener* listener : listeners_) listener->on_tick(tick_);
+}
 
-  std::optional<double> centring;
-  if (observation_ && acquired_) centring = off_centre(*observation_);
-  const Tick told{now_,
-                  simulator_.robot().truth(),
-                  shown.truth,
-                  before,
-                  odometry_,
-                  head_,
-                  command_,
-                  recovering_ ? GazeState::search : gaze_.state(),
-                  gaze_.current(),
-                  observation_ ? sensor_of(*observation_).look : look_,
-                  sighting_ ? std::optional(sighting_->status) : std::nullopt,
-                  observation_ ? &*observation_ : nullptr,
-                  centring,
-                  acquired_ ? (now_ - *acquired_).seconds() : 0.0,
-                  stopped_to_look_,
-                  localizer_ticks_,
-                  primary_,
-                  pilot_.station(),
-                  *shown.frame,
-                  sighting_ ? sighting_->predicted : std::nullopt,
-                  timing_,
-                  activations_};
-  for (Listener* listener : listeners_) listener->on_tick(told);
+const Observation* Loop::observation() const {
+  const auto& observations = tick_.estimator.observations;
+  return observations.empty() ? nullptr : &observations.front();
 }
 
 void Loop::predict() {
-  odometry_ = simulator_.robot().read_odometry();
-  head_ = simulator_.robot().read_head();
-  sensor_ = {now_, setup_.robot.zoom.at(head_.zoom_mm), head_.angles, head_.zoom_mm, look_};
-  travelled_m_ += std::abs(odometry_.trans);
-  motion_.moved(odometry_);
+  tick_.estimator.odometry = simulator_.robot().read_odometry();
+  tick_.head = simulator_.robot().read_head();
+  sensor_ = {now(), setup_.robot.zoom.at(tick_.head.zoom_mm), tick_.head.angles, tick_.head.zoom_mm,
+             look_};
+  travelled_m_ += std::abs(tick_.estimator.odometry.trans);
+  motion_.moved(tick_.estimator.odometry);
   const Stopwatch watch;
-  for (const auto& localizer : localizers_) localizer->predict(odometry_);
-  timing_.localize += watch.elapsed_ms();
+  for (const auto& localizer : localizers_) localizer->predict(tick_.estimator.odometry);
+  tick_.timing.localize += watch.elapsed_ms();
 }
 
 void Loop::watch(const imaging::Frame& frame) {
@@ -163,17 +210,17 @@ void Loop::watch(const imaging::Frame& frame) {
   const SensorSnapshot& sensor = delivered_->sensor;
   sighting_ =
       watcher_.watch(frame, request_, sensor, motion_.belief_at(sensor.stamp, belief()), *landmark);
-  timing_.track += watch.elapsed_ms();
-  observation_ = sighting_->observation;
+  tick_.timing.track += watch.elapsed_ms();
+  if (sighting_->observation) tick_.estimator.observations.push_back(*sighting_->observation);
 }
 
 void Loop::localize(const Observation& observation) {
   const Stopwatch watch;
   for (std::size_t i = 0; i < localizers_.size(); ++i)
-    localizer_ticks_[i].update = localizers_[i]->update(observation);
-  timing_.localize += watch.elapsed_ms();
+    tick_.estimator.localizers[i].updates.push_back(localizers_[i]->update(observation));
+  tick_.timing.localize += watch.elapsed_ms();
 
-  const auto& result = *localizer_ticks_[primary_].update;
+  const auto& result = tick_.estimator.localizers[primary_].updates.back();
   if (result.status == localization::UpdateStatus::fused) {
     rejected_in_a_row_ = 0;
     if (!look_fused_) scheduler_.fused(travelled_m_, gaze_.current()->landmark);
@@ -183,7 +230,7 @@ void Loop::localize(const Observation& observation) {
   }
   if (result.status == localization::UpdateStatus::unsupported) return;
   if (rejected_in_a_row_++ == 0)
-    tell("rejected",
+    tell(EventKind::rejected,
          {{"look", static_cast<double>(look_)},
           {"landmark", static_cast<double>(gaze_.current()->landmark)},
           {"nis", result.nis}},
@@ -200,14 +247,15 @@ void Loop::plan() {
     return;
   }
   const auto demand =
-      scheduler_.demand(now_, belief(), travelled_m_, pilot_.path().length() - pilot_.station());
+      scheduler_.demand(now(), belief(), travelled_m_, pilot_.path().length() - pilot_.station());
   // A landmark that is not where the belief has it is reason enough to stand still.
   const bool uneasy = demand == planner::LookDemand::stopped || !failed_.empty();
   const bool idle = gaze_.state() == GazeState::idle;
-  LookScheduler::Going going{pilot_.station(), odometry_.trans / dt_.seconds(), uneasy};
+  LookScheduler::Going going{pilot_.station(), tick_.estimator.odometry.trans / dt_.seconds(),
+                             uneasy};
   std::optional<LookScheduler::Decision> decision;
   if (idle && (uneasy || demand != planner::LookDemand::none))
-    decision = scheduler_.choose(now_, belief(), head_, going);
+    decision = scheduler_.choose(now(), belief(), tick_.head, going);
   // Two landmarks were not where they should be, and there is no third to ask.
   if (idle && !decision && different_failed() > 1) {
     localizers_[primary_]->lose();
@@ -221,8 +269,8 @@ void Loop::plan() {
   going.standing = stop;
   if (decision) begin_look(*decision);
   const bool waits = gaze_.state() == GazeState::idle;
-  gaze_.rest_at(waits ? scheduler_.prepare(now_, belief(), head_, going) : std::nullopt);
-  timing_.plan += watch.elapsed_ms();
+  gaze_.rest_at(waits ? scheduler_.prepare(now(), belief(), tick_.head, going) : std::nullopt);
+  tick_.timing.plan += watch.elapsed_ms();
 }
 
 void Loop::begin_look(const LookScheduler::Decision& decision) {
@@ -238,7 +286,7 @@ void Loop::begin_look(const LookScheduler::Decision& decision) {
                   {"travelled_m", travelled_m_}};
   if (decision.suitability) numbers.emplace_back("suitability", *decision.suitability);
   if (order.zoom_mm) numbers.emplace_back("zoom_mm", *order.zoom_mm);
-  tell("look", numbers, {{"reason", decision.reason}});
+  tell(EventKind::look, numbers, {{"reason", decision.reason}});
 }
 
 std::size_t Loop::different_failed() const {
@@ -255,13 +303,13 @@ void Loop::tell_limits(planner::LookDemand demand, bool stop) {
   const bool over = setup_.look.trigger.kind == planner::LookTriggerParams::Kind::uncertainty &&
                     demand != planner::LookDemand::none;
   const double sigma = belief().position_sigma();
-  if (over && !over_limit_1_) tell("limit_1", {{"sigma_m", sigma}});
+  if (over && !over_limit_1_) tell(EventKind::limit_1, {{"sigma_m", sigma}});
   over_limit_1_ = over;
   if (stop == stopped_to_look_) return;
   const bool limit_2 = demand == planner::LookDemand::stopped;
   const Texts why{{"reason", limit_2 ? "the uncertainty is above the second limit"
                                      : "a landmark was not where it should be"}};
-  tell(stop ? "stop" : "restart", {{"sigma_m", sigma}}, stop ? why : Texts{});
+  tell(stop ? EventKind::stop : EventKind::restart, {{"sigma_m", sigma}}, stop ? why : Texts{});
 }
 
 void Loop::drop_look(const std::string& reason) {
@@ -269,7 +317,7 @@ void Loop::drop_look(const std::string& reason) {
   rejected_in_a_row_ = 0;
   if (!order) return;
   note_failure(order->landmark);
-  tell("dropped",
+  tell(EventKind::dropped,
        {{"look", static_cast<double>(look_)}, {"landmark", static_cast<double>(order->landmark)}},
        {{"reason", reason}});
   gaze_.cancel();
@@ -279,21 +327,23 @@ void Loop::drop_look(const std::string& reason) {
 
 void Loop::steer() {
   if (recovering_) {
-    command_ = {};
-    simulator_.robot().command(command_, look_around_.step(head_));
+    tick_.base_command = {};
+    simulator_.robot().command(tick_.base_command, look_around_.step(tick_.head));
     return;
   }
-  command_ = drive();
-  const BaseRates odometry{odometry_.trans / dt_.seconds(),
-                           (odometry_.rot1 + odometry_.rot2) / dt_.seconds()};
-  const BaseRates expected = base_motion_.expect(odometry, command_);
+  tick_.base_command = drive();
+  const BaseRates odometry{
+      tick_.estimator.odometry.trans / dt_.seconds(),
+      (tick_.estimator.odometry.rot1 + tick_.estimator.odometry.rot2) / dt_.seconds()};
+  const BaseRates expected = base_motion_.expect(odometry, tick_.base_command);
   const Stopwatch watch;
   const auto order = gaze_.current();
   servo::GazeInput input{
-      now_, head_, expected, belief(), setup_.world.landmarks, sensor_.intrinsics, std::nullopt};
+      now(),       tick_.head, expected, belief(), setup_.world.landmarks, sensor_.intrinsics,
+      std::nullopt};
   input.sighting = sighting_now();
   const servo::GazeOutput output = gaze_.step(input);
-  timing_.servo += watch.elapsed_ms();
+  tick_.timing.servo += watch.elapsed_ms();
   if (order) {
     const Landmark* landmark = setup_.world.landmarks.find(order->landmark);
     if (delivered_)
@@ -302,19 +352,19 @@ void Loop::steer() {
     if (output.event != servo::GazeEvent::none) tell_gaze(output.event, order->landmark);
   }
   request_ = output.request;
-  simulator_.robot().command(command_, output.command);
+  simulator_.robot().command(tick_.base_command, output.command);
 }
 
 /// The feature where the belief's motion since its exposure has carried it.
 std::optional<servo::GazeSighting> Loop::sighting_now() const {
   // A look that was dropped in this tick, and perhaps followed by another, has no sighting.
-  if (!observation_ || !gaze_.current()) return std::nullopt;
-  const SensorSnapshot& then = sensor_of(*observation_);
+  if (observation() == nullptr || !gaze_.current()) return std::nullopt;
+  const SensorSnapshot& then = sensor_of(*observation());
   if (then.look != look_) return std::nullopt;
   const Landmark* landmark = setup_.world.landmarks.find(gaze_.current()->landmark);
-  const ImageExtent extent = image_extent(*observation_, landmark);
+  const ImageExtent extent = image_extent(*observation(), landmark);
   const servo::GazeSighting sighting{extent.centre, extent.radius_px};
-  if (then.stamp == now_) return sighting;
+  if (then.stamp == now()) return sighting;
   const auto moved =
       watcher_.motion(then, motion_.belief_at(then.stamp, belief()), sensor_, belief(), *landmark);
   if (!moved) return sighting;
@@ -322,23 +372,22 @@ std::optional<servo::GazeSighting> Loop::sighting_now() const {
 }
 
 void Loop::note_failure(LandmarkId landmark) {
-  scheduler_.failed(now_, landmark);
+  scheduler_.failed(now(), landmark);
   if (!look_fused_) failed_.push_back(landmark);
 }
 
 void Loop::tell_gaze(servo::GazeEvent event, LandmarkId landmark) {
   if (event == servo::GazeEvent::acquired)
-    acquired_ = now_;
+    acquired_ = now();
   else
     acquired_.reset();
   if (event == servo::GazeEvent::expired) note_failure(landmark);
-  // "lost" alone is said of the belief.
-  tell(event == servo::GazeEvent::lost ? "target_lost" : std::string(to_string(event)),
+  tell(event_of(event),
        {{"look", static_cast<double>(look_)}, {"landmark", static_cast<double>(landmark)}});
 }
 
-void Loop::tell(const std::string& kind, const Numbers& numbers, const Texts& texts) const {
-  const Event event{now_, kind, numbers, texts};
+void Loop::tell(EventKind kind, const Numbers& numbers, const Texts& texts) const {
+  const Event event{now(), kind, numbers, texts};
   for (Listener* listener : listeners_) listener->on_event(event);
 }
 

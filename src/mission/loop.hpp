@@ -29,15 +29,20 @@ class Loop {
   Outcome run();
 
  private:
+  Stamp now() const { return tick_.estimator.now; }
   const Belief& belief() const { return localizers_[primary_]->belief(); }
 
   void tick();
   void predict();
+  void begin_tick();
   void watch(const imaging::Frame& frame);
+  void end_tick(const ExposedFrame& shown);
   void localize(const Observation& observation);
   void plan();
   void steer();
   void recover(const imaging::Frame* frame);
+  /// What was seen in the frame of this tick.
+  const Observation* observation() const;
   std::optional<servo::GazeSighting> sighting_now() const;
   void begin_recovery();
   void begin_sweep();
@@ -63,9 +68,9 @@ class Loop {
   void tell_gaze(servo::GazeEvent event, LandmarkId landmark);
   std::optional<Outcome> outcome() const;
 
-  using Texts = std::vector<std::pair<std::string, std::string>>;
-  using Numbers = std::vector<std::pair<std::string, double>>;
-  void tell(const std::string& kind, const Numbers& numbers = {}, const Texts& texts = {}) const;
+  using Texts = Event::Texts;
+  using Numbers = Event::Numbers;
+  void tell(EventKind kind, const Numbers& numbers = {}, const Texts& texts = {}) const;
 
   const MissionSetup& setup_;
   std::uint64_t seed_;
@@ -91,12 +96,8 @@ class Loop {
   RecentMotion motion_;
   std::unique_ptr<ExposedFrame> delivered_;  ///< the frame that arrived in this tick
 
-  Stamp now_;
   Duration dt_;
-  OdometryIncrement odometry_;
-  HeadReading head_;
   SensorSnapshot sensor_;
-  BaseRates command_;
   double travelled_m_ = 0.0;
   bool stopped_to_look_ = false;
   bool over_limit_1_ = false;
@@ -115,12 +116,8 @@ class Loop {
   Stamp stroll_end_;
   std::optional<Prior> by_code_;  ///< what a pattern of the sweep said
 
-  // What this tick tells its listeners.
-  std::vector<LocalizerTick> localizer_ticks_;
   std::optional<Sighting> sighting_;
-  std::optional<Observation> observation_;
-  std::optional<pilot::Activations> activations_;
-  TickTiming timing_;
+  Tick tick_;  ///< what this tick tells its listeners
 };
 
 }  // namespace vigia::mission

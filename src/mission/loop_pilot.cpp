@@ -4,9 +4,10 @@ namespace vigia::mission {
 
 BaseRates Loop::drive() {
   const RangeScan scan = simulator_.scan();
-  const pilot::PilotOutput output = pilot_.step(
-      {now_, odometry_, belief(), scan.readings.empty() ? nullptr : &scan, stopped_to_look_});
-  activations_ = output.activations;
+  const pilot::PilotOutput output =
+      pilot_.step({now(), tick_.estimator.odometry, belief(),
+                   scan.readings.empty() ? nullptr : &scan, stopped_to_look_});
+  tick_.activations = output.activations;
   tell_pilot(output);
   if (output.status == pilot::PilotStatus::blocked) go_round(output);
   return output.rates;
@@ -21,12 +22,12 @@ void Loop::tell_pilot(const pilot::PilotOutput& output) {
       numbers.emplace_back("x_m", output.in_the_way->x());
       numbers.emplace_back("y_m", output.in_the_way->y());
     }
-    tell("evade", numbers);
+    tell(EventKind::evade, numbers);
   } else if (output.status == PilotStatus::driving && evading_) {
     evading_ = false;
-    tell("rejoined", {{"station_m", output.station_m}});
+    tell(EventKind::rejoined, {{"station_m", output.station_m}});
   } else if (output.status == PilotStatus::waiting && pilot_status_ != PilotStatus::waiting) {
-    tell("wait", {{"station_m", output.station_m}});
+    tell(EventKind::wait, {{"station_m", output.station_m}});
   }
   pilot_status_ = output.status;
 }
@@ -35,14 +36,14 @@ void Loop::tell_pilot(const pilot::PilotOutput& output) {
 /// waits and tries again.
 void Loop::go_round(const pilot::PilotOutput& output) {
   const Eigen::Vector2d where = output.in_the_way.value_or(belief().pose.position());
-  tell("blocked", {{"x_m", where.x()}, {"y_m", where.y()}, {"for_s", pilot_.stalled_s()}});
+  tell(EventKind::blocked, {{"x_m", where.x()}, {"y_m", where.y()}, {"for_s", pilot_.stalled_s()}});
   if (pilot_.stalled_s() >= setup_.pilot.avoidance.give_up_s) {
-    tell("stuck", {}, {{"reason", "the path stays blocked and there is no way round"}});
+    tell(EventKind::stuck, {}, {{"reason", "the path stays blocked and there is no way round"}});
     gave_up_ = Outcome::stuck;
     return;
   }
-  blockages_.note(now_, pilot_.obstacles(belief().pose));
-  replan(belief().pose, "blocked", blockages_.recent(now_));
+  blockages_.note(now(), pilot_.obstacles(belief().pose));
+  replan(belief().pose, "blocked", blockages_.recent(now()));
 }
 
 bool Loop::replan(const Pose2& from, const std::string& reason,
@@ -70,7 +71,7 @@ bool Loop::replan(const Pose2& from, const std::string& reason,
   waypoints_ = waypoints;
   pilot_.follow(route.path);
   scheduler_.follow(pilot_.path());
-  tell("replan", {{"length_m", route.path.length()}}, {{"reason", reason}});
+  tell(EventKind::replan, {{"length_m", route.path.length()}}, {{"reason", reason}});
   return true;
 }
 

@@ -52,7 +52,7 @@ std::optional<Prior> best_of(const localization::Relocalization& found) {
 // The lost robot stands still and looks around; what it sees, all at once, tells where it is.
 
 void Loop::begin_recovery() {
-  tell("lost", {{"sigma_m", belief().position_sigma()}}, {{"localizer", setup_.primary}});
+  tell(EventKind::lost, {{"sigma_m", belief().position_sigma()}}, {{"localizer", setup_.primary}});
   gaze_.cancel();
   request_ = servo::TrackRequest::none;
   acquired_.reset();
@@ -63,7 +63,7 @@ void Loop::begin_recovery() {
 }
 
 void Loop::recover(const imaging::Frame* frame) {
-  command_ = {};
+  tick_.base_command = {};
   if (stroll_) {
     if (stroll_on()) return;
     stroll_.reset();
@@ -71,13 +71,13 @@ void Loop::recover(const imaging::Frame* frame) {
   }
   // The frame must have been exposed at this stop, standing still.
   const Stamp exposed = frame != nullptr ? delivered_->sensor.stamp : Stamp{};
-  if (look_around_.ready(now_, head_, exposed)) {
+  if (look_around_.ready(now(), tick_.head, exposed)) {
     const Stopwatch watch;
     const SensorSnapshot& sensor = delivered_->sensor;
     for (auto& seen : watcher_.survey(*frame, sensor)) sweep_.sightings.push_back(seen);
     sweep_.views.push_back(sensor);
     for (const auto& seen : watcher_.survey_points(*frame, sensor)) read_code(seen);
-    timing_.track += watch.elapsed_ms();
+    tick_.timing.track += watch.elapsed_ms();
     if (!look_around_.next()) {
       relocalize();
       return;
@@ -85,7 +85,7 @@ void Loop::recover(const imaging::Frame* frame) {
     look_ = scheduler_.next_look();
     simulator_.robot().begin_look();
   }
-  simulator_.robot().command(command_, look_around_.step(head_));
+  simulator_.robot().command(tick_.base_command, look_around_.step(tick_.head));
 }
 
 /// A pattern says who it is and where the robot stands: the surest one of a sweep counts.
@@ -100,8 +100,8 @@ void Loop::read_code(const PointsObservation& seen) {
 
 void Loop::relocalize() {
   const auto found = relocalizer_.solve(sweep_);
-  tell("looked_around", {{"sightings", static_cast<double>(sweep_.sightings.size())},
-                         {"hypotheses", static_cast<double>(found.hypotheses.size())}});
+  tell(EventKind::looked_around, {{"sightings", static_cast<double>(sweep_.sightings.size())},
+                                  {"hypotheses", static_cast<double>(found.hypotheses.size())}});
   const localization::Sweep sweep = std::exchange(sweep_, {});
   std::optional<Prior> here = std::exchange(by_code_, std::nullopt);
   if (!here) here = best_of(found);
@@ -112,7 +112,7 @@ void Loop::relocalize() {
     return;
   }
   if (look_around_.sweeps() >= setup_.recovery.sweeps) {
-    tell("stuck", {}, {{"reason", "looked around in vain"}});
+    tell(EventKind::stuck, {}, {{"reason", "looked around in vain"}});
     gave_up_ = Outcome::stuck;
     return;
   }
@@ -123,7 +123,7 @@ void Loop::relocalize() {
 void Loop::begin_sweep() {
   look_ = scheduler_.next_look();
   simulator_.robot().begin_look();
-  look_around_.begin(head_);
+  look_around_.begin(tick_.head);
 }
 
 /// Where too little is seen, another place may show more: some steps to where the ring has most
@@ -137,32 +137,32 @@ void Loop::begin_stroll() {
   const Eigen::Vector2d to = from + way->range_m * unit_vector(heading);
   stroll_.emplace(Path({from, to}), setup_.world.plan, setup_.robot.robot.radius_m,
                   setup_.robot.robot.base, setup_.pilot);
-  stroll_end_ = now_ + Duration::from_seconds(kStroll_s);
-  tell("stroll", {{"length_m", way->range_m}});
+  stroll_end_ = now() + Duration::from_seconds(kStroll_s);
+  tell(EventKind::stroll, {{"length_m", way->range_m}});
 }
 
 bool Loop::stroll_on() {
-  if (now_ >= stroll_end_) return false;
+  if (now() >= stroll_end_) return false;
   const RangeScan scan = simulator_.scan();
-  const auto output = stroll_->step({now_, odometry_, belief(), &scan, false});
-  activations_ = output.activations;
+  const auto output = stroll_->step({now(), tick_.estimator.odometry, belief(), &scan, false});
+  tick_.activations = output.activations;
   const bool under_way =
       output.status != pilot::PilotStatus::arrived && output.status != pilot::PilotStatus::blocked;
-  command_ = under_way ? output.rates : BaseRates{};
-  simulator_.robot().command(command_, {});
+  tick_.base_command = under_way ? output.rates : BaseRates{};
+  simulator_.robot().command(tick_.base_command, {});
   return under_way;
 }
 
 void Loop::recovered(const Prior& here) {
-  localizers_[primary_]->reset(now_, here);
+  localizers_[primary_]->reset(now(), here);
   recovering_ = false;
   look_around_.found();
-  tell("recovered", {{"x_m", here.pose.x},
-                     {"y_m", here.pose.y},
-                     {"theta_rad", here.pose.theta},
-                     {"sigma_m", belief().position_sigma()}});
+  tell(EventKind::recovered, {{"x_m", here.pose.x},
+                              {"y_m", here.pose.y},
+                              {"theta_rad", here.pose.theta},
+                              {"sigma_m", belief().position_sigma()}});
   if (replan(here.pose, "recovered")) return;
-  tell("stuck", {}, {{"reason", "no route from where the robot found itself"}});
+  tell(EventKind::stuck, {}, {{"reason", "no route from where the robot found itself"}});
   gave_up_ = Outcome::stuck;
 }
 

@@ -44,10 +44,12 @@ std::string header(const std::vector<std::string>& localizers) {
 void put_state(Buffer& line, const Tick& tick) {
   const auto& truth = tick.truth;
   put(line, "{:.3f},{:.6f},{:.6f},{:.7f},{:.5f},{:.5f},{:.7f},{:.7f},{:.4f},{:.7f},{:.7f}",
-      tick.now.seconds(), truth.pose.x, truth.pose.y, truth.pose.theta, truth.base.v, truth.base.w,
-      truth.head.pan, truth.head.tilt, truth.zoom_mm, tick.head.angles.pan, tick.head.angles.tilt);
-  put(line, ",{:.8f},{:.8f},{:.8f},{:.5f},{:.5f},{:.4f}", tick.odometry.rot1, tick.odometry.trans,
-      tick.odometry.rot2, tick.base_command.v, tick.base_command.w, tick.station_m);
+      tick.estimator.now.seconds(), truth.pose.x, truth.pose.y, truth.pose.theta, truth.base.v,
+      truth.base.w, truth.head.pan, truth.head.tilt, truth.zoom_mm, tick.head.angles.pan,
+      tick.head.angles.tilt);
+  put(line, ",{:.8f},{:.8f},{:.8f},{:.5f},{:.5f},{:.4f}", tick.estimator.odometry.rot1,
+      tick.estimator.odometry.trans, tick.estimator.odometry.rot2, tick.base_command.v,
+      tick.base_command.w, tick.station_m);
 }
 
 /// Centre, and of an ellipse its axes, of other features their radius.
@@ -63,13 +65,13 @@ void put_feature(Buffer& line, const Observation* seen) {
   }
 }
 
-void put_gaze(Buffer& line, const Tick& tick) {
-  put(line, ",{},", to_string(tick.gaze));
-  if (tick.order) put(line, "{}", tick.order->landmark);
-  put(line, ",{},{},", tick.look, tick.stopped_to_look ? 1 : 0);
-  if (tick.feature) put(line, "{}", tracking::to_string(*tick.feature));
-  put_feature(line, tick.observation);
-  if (tick.centring_px) put(line, "{:.4f}", *tick.centring_px);
+void put_attention(Buffer& line, const AttentionTick& attention, const Observation* seen) {
+  put(line, ",{},", to_string(attention.gaze));
+  if (attention.order) put(line, "{}", attention.order->landmark);
+  put(line, ",{},{},", attention.look, attention.stopped_to_look ? 1 : 0);
+  if (attention.feature) put(line, "{}", tracking::to_string(*attention.feature));
+  put_feature(line, seen);
+  if (attention.centring_px) put(line, "{:.4f}", *attention.centring_px);
 }
 
 void put_belief(Buffer& line, const LocalizerTick& localizer) {
@@ -78,11 +80,12 @@ void put_belief(Buffer& line, const LocalizerTick& localizer) {
   put(line, ",{:.6f},{:.6f},{:.7f},{:.4e},{:.4e},{:.4e},{:.4e},{:.4e},{:.4e},{},", b.pose.x,
       b.pose.y, b.pose.theta, p(0, 0), p(1, 1), p(2, 2), p(0, 1), p(0, 2), p(1, 2),
       to_string(b.status));
-  if (localizer.update)
-    put(line, "{},{:.4f}", localization::to_string(localizer.update->status),
-        localizer.update->nis);
-  else
+  if (localizer.updates.empty()) {
     put(line, ",");
+    return;
+  }
+  const localization::UpdateResult& update = localizer.updates.back();
+  put(line, "{},{:.4f}", localization::to_string(update.status), update.nis);
 }
 
 void put_activations(Buffer& line, const std::optional<pilot::Activations>& activations) {
@@ -122,30 +125,32 @@ void Tables::seed(std::uint64_t seed) {
 }
 
 void Tables::tick(const Tick& tick) {
+  const EstimatorTick& estimator = tick.estimator;
   Buffer line;
   put_state(line, tick);
-  put_gaze(line, tick);
-  for (const auto& localizer : tick.localizers) put_belief(line, localizer);
+  put_attention(line, tick.attention,
+                estimator.observations.empty() ? nullptr : &estimator.observations.front());
+  for (const auto& localizer : estimator.localizers) put_belief(line, localizer);
   put_activations(line, tick.activations);
   line.push_back('\n');
   ticks_.write(view(line));
 
-  write_tum(truth_, tick.now, tick.truth.pose);
+  write_tum(truth_, estimator.now, tick.truth.pose);
   for (std::size_t i = 0; i < localizers_.size(); ++i)
-    write_tum(localizers_[i], tick.now, tick.localizers[i].belief->pose);
+    write_tum(localizers_[i], estimator.now, estimator.localizers[i].belief->pose);
 
   const TickTiming& t = tick.timing;
   timings_.push_back(t);
   Buffer timing;
-  put(timing, "{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f}\n", tick.now.seconds(), t.step,
-      t.render, t.track, t.localize, t.plan, t.servo);
+  put(timing, "{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f}\n", tick.estimator.now.seconds(),
+      t.step, t.render, t.track, t.localize, t.plan, t.servo);
   timing_.write(view(timing));
 }
 
 void Tables::event(const Event& event) {
   nlohmann::ordered_json line;
   line["t_s"] = event.stamp.seconds();
-  line["event"] = event.kind;
+  line["event"] = to_string(event.kind);
   for (const auto& [key, value] : event.numbers) {
     // Counts and ids are whole numbers and read as such.
     if (value == std::floor(value) && std::abs(value) < 1e15)
