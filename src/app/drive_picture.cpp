@@ -6,8 +6,8 @@
 
 namespace vigia::app {
 
-void DrivePicture::on_start(const mission::MissionSetup& setup, std::uint64_t /*seed*/) {
-  setup_ = &setup;
+void DrivePicture::on_start(const mission::MissionStart& start) {
+  setup_ = &start.setup;
 }
 
 void DrivePicture::on_tick(const mission::Tick& tick) {
@@ -23,8 +23,8 @@ void DrivePicture::on_tick(const mission::Tick& tick) {
 }
 
 void DrivePicture::note_look(const mission::Tick& tick) {
-  const mission::AttentionTick& attention = tick.attention;
-  if (tick.estimator.observations.empty() || !attention.order) return;
+  if (tick.estimator.observations.empty() || !tick.attention || !tick.attention->order) return;
+  const mission::AttentionTick& attention = *tick.attention;
   const auto& updates = tick.estimator.localizers[tick.estimator.primary].updates;
   const bool fused = std::any_of(updates.begin(), updates.end(), [](const auto& update) {
     return update.status == localization::UpdateStatus::fused;

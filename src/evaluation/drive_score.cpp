@@ -25,12 +25,12 @@ int& count_of(LocalizerScore& score, localization::UpdateStatus status) {
 /// What the image taught at best.
 void bound_by(const Observation& observation, const Landmark& landmark,
               const mission::ExposureTruth& truth, PosteriorBound& bound) {
-  const SensorSnapshot& sensor = sensor_of(observation);
+  const Shot& shot = shot_of(observation);
   if (const auto* disc = std::get_if<EllipseObservation>(&observation))
-    bound.update(truth.pose, landmark, sensor, truth.bias,
+    bound.update(truth.pose, landmark, shot, truth.bias,
                  localization::measured_disc_covariance(*disc));
   if (const auto* points = std::get_if<PointsObservation>(&observation))
-    bound.update(truth.pose, landmark, sensor, truth.bias,
+    bound.update(truth.pose, landmark, shot, truth.bias,
                  localization::seen_points(landmark, *points));
 }
 
@@ -73,15 +73,16 @@ struct DriveScorer::Impl {
 DriveScorer::DriveScorer() : impl_(std::make_unique<Impl>()) {}
 DriveScorer::~DriveScorer() = default;
 
-void DriveScorer::on_start(const mission::MissionSetup& setup, std::uint64_t seed) {
+void DriveScorer::on_start(const mission::MissionStart& start) {
+  const mission::MissionSetup& setup = start.setup;
   *impl_ = {};
   impl_->setup = &setup;
   impl_->score.mission = setup.name;
-  impl_->score.seed = seed;
+  impl_->score.seed = start.seed;
   impl_->score.primary = setup.primary;
   for (std::size_t i = 0; i < setup.localizers.size(); ++i)
     impl_->sums.emplace_back(
-        PosteriorBound(setup.prior.covariance, setup.robot.robot.head, setup.robot.robot.sensor));
+        PosteriorBound(setup.prior.covariance, setup.on_ground(), setup.robot.robot.sensor));
   impl_->last_zoom_mm = setup.robot.initial_zoom_mm;
 }
 
@@ -102,7 +103,7 @@ std::optional<LookId> DriveScorer::Impl::score_updates(const mission::EstimatorT
     if (updates[k].landmark)
       bound_by(tick.observations[k], *setup->world.landmarks.find(*updates[k].landmark),
                tick.truth->exposures[k], sum.bound);
-    look = sensor_of(tick.observations[k]).look;
+    look = shot_of(tick.observations[k]).look;
   }
   return look;
 }
@@ -140,12 +141,13 @@ void DriveScorer::Impl::score_look(LookId look, LocalizerSums& sum, double nees,
 
 void DriveScorer::Impl::score_perception(const mission::Tick& tick) {
   PerceptionScore& p = score.perception;
-  score_centring(tick.attention);
-  if (tick.attention.stopped_to_look) {
+  const auto attention = tick.attention.value_or(mission::AttentionTick{});
+  score_centring(attention);
+  if (attention.stopped_to_look) {
     p.stopped_s += setup->tick_s;
     if (!stopped) ++p.stops;
   }
-  stopped = tick.attention.stopped_to_look;
+  stopped = attention.stopped_to_look;
   const bool zoom_moves = std::abs(tick.truth.zoom_mm - last_zoom_mm) > 1e-9;
   if (zoom_moves && !zooming) ++p.zoom_changes;
   zooming = zoom_moves;

@@ -32,7 +32,7 @@ class Updates : public Listener {
       if (localizer.updates.size() != estimator.observations.size()) ++untold;
     }
     for (const Observation& observation : estimator.observations)
-      if (sensor_of(observation).look != tick.attention.look) ++untold;
+      if (shot_of(observation).look != tick.attention->look) ++untold;
   }
   void on_event(const Event& event) override {
     dropped += event.kind == EventKind::dropped ? 1 : 0;

@@ -15,11 +15,11 @@ class RealisticStory : public Listener {
   void on_tick(const Tick& tick) override {
     const auto& observations_now = tick.estimator.observations;
     for (std::size_t i = 0; i < observations_now.size(); ++i) {
-      const SensorSnapshot& sensor = sensor_of(observations_now[i]);
+      const Shot& shot = shot_of(observations_now[i]);
       ++observations;
-      late_by = tick.estimator.now - sensor.stamp;
-      if (tick.estimator.truth->exposures[i].stamp != sensor.stamp) ++mismatched;
-      if (sensor.look != tick.attention.look) ++of_another_look;
+      late_by = tick.estimator.now - shot.stamp;
+      if (tick.estimator.truth->exposures[i].stamp != shot.stamp) ++mismatched;
+      if (shot.look != tick.attention->look) ++of_another_look;
     }
   }
   std::map<EventKind, int> count;

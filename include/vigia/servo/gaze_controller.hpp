@@ -6,6 +6,7 @@
 #include "vigia/core/actuation.hpp"
 #include "vigia/core/belief.hpp"
 #include "vigia/core/gaze.hpp"
+#include "vigia/core/ground.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/servo/pan_tilt_servo.hpp"
 #include "vigia/servo/zoom_control.hpp"
@@ -30,9 +31,6 @@ struct GazeParams {
   /// σ of the head's angles, for the zoom at which the landmark is still inside the image.
   double look_angle_deg = 0.3;
 };
-
-/// What the tracker is asked to do with the next frame.
-enum class TrackRequest { none, acquire, track };
 
 /// The tracker's answer to the last request, in pixels.
 struct GazeSighting {
@@ -80,7 +78,8 @@ struct GazeOutput {
 /// dwell_s anew.
 class GazeController {
  public:
-  GazeController(HeadGeometry geometry, HeadLimits limits, ZoomCalibration zoom, GazeParams params);
+  GazeController(HeadGeometry geometry, HeadLimits limits, ZoomCalibration zoom, GazeParams params,
+                 const Ground& ground = {});
 
   /// Replaces the order in force; the state becomes slew. The released landmark is forgotten.
   void order(const GazeOrder& order);
@@ -135,6 +134,7 @@ class GazeController {
   HeadLimits limits_;
   ZoomCalibration zoom_;
   GazeParams params_;
+  Ground ground_;
   PanTiltServo servo_;
   ZoomControl zoom_control_;
   GazeState state_ = GazeState::idle;
