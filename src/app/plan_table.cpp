@@ -7,12 +7,20 @@
 #include <nlohmann/json.hpp>
 
 #include "vigia/core/error.hpp"
-#include "vigia/localization/points_information.hpp"
+#include "vigia/localization/landmark_information.hpp"
 #include "vigia/planner/look_policy.hpp"
 #include "vigia/report/plan_picture.hpp"
 
 namespace vigia::app {
 namespace {
+
+localization::LandmarkInformationParams information_params(const mission::MissionSetup& setup) {
+  localization::LandmarkInformationParams params;
+  params.sensor = setup.ekf.sensor;
+  params.radius_px = setup.look.radius_px;
+  params.fill = setup.look.fill;
+  return params;
+}
 
 /// What a policy is asked with, at a control position.
 class PolicyAtPositions {
@@ -22,10 +30,7 @@ class PolicyAtPositions {
       : setup_(setup),
         visibility_(visibility),
         head_(head),
-        information_(localization::DiscInformation(head.geometry, head.zoom,
-                                                   {setup.ekf.sensor, setup.look.radius_px}),
-                     localization::PointsInformation(head.geometry, head.zoom,
-                                                     {setup.ekf.sensor, setup.look.fill})),
+        information_(head.geometry, head.zoom, information_params(setup)),
         policy_(planner::make_look_policy(
             policy,
             {setup.look.fixed_landmark, RandomStream(setup.seed, "look policy"),

@@ -1,8 +1,6 @@
 #include "vigia/localization/ekf.hpp"
 
-#include "association.hpp"
 #include "look_smoother.hpp"
-#include "points_gate.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -14,51 +12,39 @@
 namespace vigia::localization {
 namespace {
 
-constexpr int kDof = 3;        // of (u, v, s)
-constexpr int kPointsDof = 5;  // at most, of what points say about the state
-/// σ of ln √(ab) that teaches nothing: a factor of e^1000.
-constexpr double kUnmeasuredSize = 1e3;
+constexpr int kTypicalDof = 3;  // of an image: a disc's
+constexpr int kMaxDof = 5;      // of an image: what points say of the state
 /// A look without an image for so long (s) is not linearised anew any more.
 constexpr double kLookPause = 1.0;
 /// Of a look of more events the older half is not linearised anew any more.
 constexpr std::size_t kLookEvents = 250;
 
+MeasurementParams measurement_params(const EkfParams& params) {
+  return {params.sensor,          params.gate_probability, params.ambiguity_ratio,
+          params.centre_floor_px, params.size_floor,       params.use_size};
+}
+
 double fraction_at(const OdometryIncrement& u, Stamp stamp) {
   return (stamp - u.from).seconds() / (u.to - u.from).seconds();
 }
 
-/// What is left of a measurement's covariance when the size is not to teach anything.
-Eigen::Matrix3d without_size(Eigen::Matrix3d R) {
-  R.row(2).setZero();
-  R.col(2).setZero();
-  R(2, 2) = kUnmeasuredSize * kUnmeasuredSize;
-  return R;
+/// The readings that came with an image; nullptr for an increment.
+const SensorSnapshot* readings_of(const LookInput& input) {
+  const auto* match = std::get_if<Match>(&input);
+  return match == nullptr ? nullptr : &sensor_of(*match);
 }
 
-bool is_usable(const EllipseObservation& observation) {
-  const Ellipse& e = observation.ellipse;
-  return e.a > 0.0 && e.b > 0.0 && measured_disc(observation).allFinite() &&
-         measured_disc_covariance(observation).allFinite();
-}
-
-bool is_usable(const PointsObservation& observation) {
-  return !observation.points.empty();
-}
-
-bool is_image(const EkfInput& input) {
-  return sensor_of(input) != nullptr;
+bool is_image(const LookInput& input) {
+  return std::holds_alternative<Match>(input);
 }
 
 }  // namespace
 
 EkfLocalizer::EkfLocalizer(LandmarkMap map, const HeadGeometry& geometry, const EkfParams& params,
                            std::optional<FloorPlan> plan)
-    : map_(std::move(map)),
-      geometry_(geometry),
-      params_(params),
-      plan_(std::move(plan)),
-      gate_(chi_square_quantile(params.gate_probability, kDof)),
-      nis_limits_(static_cast<std::size_t>(kPointsDof * params.nis_looks) + 1),
+    : params_(params),
+      model_(std::move(map), geometry, measurement_params(params), std::move(plan)),
+      nis_limits_(static_cast<std::size_t>(kMaxDof * params.nis_looks) + 1),
       mean_speed_(params.odometry) {
   for (std::size_t dof = 1; dof < nis_limits_.size(); ++dof)
     nis_limits_[dof] = chi_square_quantile(1.0 - params.nis_probability, static_cast<double>(dof));
@@ -84,10 +70,10 @@ void EkfLocalizer::lose() {
 
 void EkfLocalizer::predict(const OdometryIncrement& increment) {
   assert(std::isfinite(increment.rot1 + increment.trans + increment.rot2));
-  const std::vector<EkfInput> ahead = drop_extrapolated();
-  append(Motion{increment, mean_speed_.even(increment)});
-  for (const EkfInput& fix : ahead) {
-    const std::vector<Event> later = roll_back(sensor_of(fix)->stamp);
+  const std::vector<LookInput> ahead = drop_extrapolated();
+  append(Motion{increment, mean_speed_.at_mean_speed(increment)});
+  for (const LookInput& fix : ahead) {
+    const std::vector<Event> later = roll_back(readings_of(fix)->stamp);
     append(fix);
     for (const Event& event : later) append(event.input, event.extrapolated);
   }
@@ -98,64 +84,34 @@ void EkfLocalizer::predict(const OdometryIncrement& increment) {
 UpdateResult EkfLocalizer::update(const Observation& observation) {
   const bool usable = std::visit([](const auto& seen) { return is_usable(seen); }, observation);
   UpdateResult result{UpdateStatus::degenerate, std::nullopt, 0.0, 0};
-  if (usable) result = take_in(observation);
+  if (usable) result = process(observation);
   ++counts_[static_cast<std::size_t>(result.status)];
   refresh_belief();
   return result;
 }
 
-UpdateResult EkfLocalizer::take_in(const Observation& observation) {
+UpdateResult EkfLocalizer::process(const Observation& observation) {
   const SensorSnapshot& sensor = vigia::sensor_of(observation);
   if (sensor.stamp < horizon_) return {UpdateStatus::too_late, std::nullopt, 0.0, 0};
   const std::vector<Event> later = roll_back(sensor.stamp);
   const bool first_of_look = state().look != sensor.look;
-  const EkfState at = with_look(state(), sensor.look);
-  const Match found = std::visit([&](const auto& seen) { return match(seen, at); }, observation);
-  if (found.fix)
-    append(*found.fix);
+  const LookState at = with_look(state(), sensor.look);
+  Association found = model_.associate(observation, at);
+  if (found.match)
+    append(*std::move(found.match));
   else if (!events_.empty() && events_.back().extrapolated)
     events_.pop_back();
   for (const Event& event : later) append(event.input, event.extrapolated);
-  watch_innovations(found.result, sensor.look, first_of_look);
+  monitor_innovations(found.result, sensor.look, first_of_look);
   return found.result;
 }
 
-EkfLocalizer::Match EkfLocalizer::match(const EllipseObservation& observation,
-                                        const EkfState& at) const {
-  const AssociationModel model{map_, plan_ ? &*plan_ : nullptr, geometry_, params_.sensor, gate_};
-  const Eigen::Vector3d z = measured_disc(observation);
-  const Eigen::Matrix3d R = measurement_covariance(observation);
-  const Association found = associate(model, at, observation, z, R);
-  if (!found.any_image) return {{UpdateStatus::degenerate, std::nullopt, 0.0, 0}, std::nullopt};
-  if (found.inside_gate.empty())
-    return {{UpdateStatus::gated, std::nullopt, found.best_nis, kDof}, std::nullopt};
-  const Candidate& best = found.inside_gate.front();
-  if (found.inside_gate.size() > 1 &&
-      found.inside_gate[1].cost - best.cost < 2.0 * std::log(params_.ambiguity_ratio))
-    return {{UpdateStatus::ambiguous, std::nullopt, best.nis, kDof}, std::nullopt};
-  return {{UpdateStatus::fused, best.landmark->id, best.nis, kDof},
-          DiscFix{observation.sensor, *best.landmark, z, params_.use_size ? R : without_size(R)}};
-}
-
-EkfLocalizer::Match EkfLocalizer::match(const PointsObservation& observation,
-                                        const EkfState& at) const {
-  const Landmark* landmark = map_.find(observation.landmark);
-  if (landmark == nullptr) return {{UpdateStatus::gated, std::nullopt, 0.0, 0}, std::nullopt};
-  PointsFix fix{observation.sensor, *landmark,
-                seen_points(*landmark, observation, params_.centre_floor_px)};
-  if (fix.points.empty()) return {{UpdateStatus::degenerate, std::nullopt, 0.0, 0}, std::nullopt};
-  const UpdateResult result =
-      gate_points({geometry_, params_.sensor, params_.gate_probability}, at, fix);
-  if (result.status != UpdateStatus::fused) return {result, std::nullopt};
-  return {result, std::move(fix)};
-}
-
-void EkfLocalizer::append(const EkfInput& input, bool extrapolated) {
+void EkfLocalizer::append(const LookInput& input, bool extrapolated) {
   Event event{input, extrapolated, state(), events_.empty() ? Window{} : events_.back().window};
   if (const auto* motion = std::get_if<Motion>(&input))
     move_by(*motion, event);
   else
-    fuse(*sensor_of(input), event);
+    fuse(*readings_of(input), event);
   assert(event.after.mean.allFinite() && event.after.covariance.allFinite());
   events_.push_back(std::move(event));
 }
@@ -178,8 +134,7 @@ void EkfLocalizer::fuse(const SensorSnapshot& sensor, Event& event) const {
   ++window.images;
   window.last_image = sensor.stamp;
   auto smoothed = smooth_look(window.start, inputs_of_look(event), guess_of_look(event),
-                              {geometry_, params_.sensor, params_.odometry}, params_.iterations,
-                              params_.converged);
+                              {model_, params_.odometry}, params_.iterations, params_.converged);
   if (!smoothed) {
     window = {};
     return;
@@ -197,11 +152,11 @@ void EkfLocalizer::fuse(const SensorSnapshot& sensor, Event& event) const {
   }
 }
 
-std::vector<const EkfInput*> EkfLocalizer::inputs_of_look(const Event& event) const {
+std::vector<const LookInput*> EkfLocalizer::inputs_of_look(const Event& event) const {
   const Window& window = event.window;
   int stride = 1;
   while (window.images > stride * params_.look_images) stride *= 2;
-  std::vector<const EkfInput*> inputs;
+  std::vector<const LookInput*> inputs;
   int image = 0;
   for (auto it = events_.end() - static_cast<std::ptrdiff_t>(window.events - 1);
        it != events_.end(); ++it) {
@@ -221,15 +176,8 @@ std::vector<Vector6> EkfLocalizer::guess_of_look(const Event& event) const {
   return guess;
 }
 
-EkfState EkfLocalizer::with_look(const EkfState& state, LookId look) const {
+LookState EkfLocalizer::with_look(const LookState& state, LookId look) const {
   return state.look == look ? state : begin_look(state, look, params_.sensor);
-}
-
-Eigen::Matrix3d EkfLocalizer::measurement_covariance(const EllipseObservation& observation) const {
-  const Eigen::Vector3d floor(params_.centre_floor_px, params_.centre_floor_px, params_.size_floor);
-  Eigen::Matrix3d R = measured_disc_covariance(observation);
-  R.diagonal() += floor.cwiseAbs2();
-  return R;
 }
 
 std::vector<EkfLocalizer::Event> EkfLocalizer::roll_back(Stamp stamp) {
@@ -259,7 +207,7 @@ std::vector<EkfLocalizer::Event> EkfLocalizer::roll_back(Stamp stamp) {
 
 void EkfLocalizer::extrapolate(Stamp stamp) {
   Motion motion;
-  motion.increment = motion.even = {state().stamp, stamp, 0.0, 0.0, 0.0};
+  motion.increment = motion.mean_speed = {state().stamp, stamp, 0.0, 0.0, 0.0};
   const auto last = std::find_if(events_.rbegin(), events_.rend(), [](const Event& event) {
     return std::holds_alternative<Motion>(event.input);
   });
@@ -274,10 +222,10 @@ void EkfLocalizer::extrapolate(Stamp stamp) {
   append(motion, true);
 }
 
-std::vector<EkfInput> EkfLocalizer::drop_extrapolated() {
+std::vector<LookInput> EkfLocalizer::drop_extrapolated() {
   const auto first = std::find_if(events_.begin(), events_.end(),
                                   [](const Event& event) { return event.extrapolated; });
-  std::vector<EkfInput> fixes;
+  std::vector<LookInput> fixes;
   for (auto it = first; it != events_.end(); ++it)
     if (is_image(it->input)) fixes.push_back(it->input);
   events_.erase(first, events_.end());
@@ -301,7 +249,8 @@ void EkfLocalizer::forget_old() {
   }
 }
 
-void EkfLocalizer::watch_innovations(const UpdateResult& result, LookId look, bool first_of_look) {
+void EkfLocalizer::monitor_innovations(const UpdateResult& result, LookId look,
+                                       bool first_of_look) {
   if (result.status == UpdateStatus::gated || result.status == UpdateStatus::degenerate) {
     ++rejections_;
     rejected_looks_.insert(look);
@@ -321,7 +270,7 @@ void EkfLocalizer::watch_innovations(const UpdateResult& result, LookId look, bo
 bool EkfLocalizer::innovations_are_unlikely() const {
   double sum = 0.0;
   // Looks to come count as discs.
-  int dof = kDof * (params_.nis_looks - static_cast<int>(first_of_looks_.size()));
+  int dof = kTypicalDof * (params_.nis_looks - static_cast<int>(first_of_looks_.size()));
   for (const UpdateResult& first : first_of_looks_) {
     sum += first.nis;
     dof += first.dof;
@@ -330,7 +279,7 @@ bool EkfLocalizer::innovations_are_unlikely() const {
 }
 
 void EkfLocalizer::refresh_belief() {
-  const EkfState& now = state();
+  const LookState& now = state();
   belief_.stamp = now.stamp;
   belief_.pose = now.pose();
   belief_.covariance = now.pose_covariance();

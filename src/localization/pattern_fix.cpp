@@ -7,7 +7,7 @@
 #include <Eigen/Cholesky>
 
 #include "vigia/localization/chi_square.hpp"
-#include "vigia/localization/ekf_state.hpp"
+#include "vigia/localization/motion.hpp"
 
 namespace vigia::localization {
 namespace {
@@ -78,12 +78,12 @@ void PatternFixLocalizer::predict(const OdometryIncrement& increment) {
 
 UpdateResult PatternFixLocalizer::update(const Observation& observation) {
   UpdateResult result;
-  if (const auto* points = std::get_if<PointsObservation>(&observation)) result = take_in(*points);
+  if (const auto* points = std::get_if<PointsObservation>(&observation)) result = process(*points);
   ++counts_[static_cast<std::size_t>(result.status)];
   return result;
 }
 
-UpdateResult PatternFixLocalizer::take_in(const PointsObservation& observation) {
+UpdateResult PatternFixLocalizer::process(const PointsObservation& observation) {
   const Landmark* landmark = map_.find(observation.landmark);
   if (landmark == nullptr) return {UpdateStatus::gated, std::nullopt, 0.0, 0};
   if (!std::holds_alternative<PatternShape>(landmark->shape)) return {};

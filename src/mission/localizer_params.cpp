@@ -15,13 +15,11 @@ localization::PatternFixParams pattern_fix_params(const MissionSetup& setup) {
 }
 
 localization::LandmarkInformation landmark_information(const MissionSetup& setup) {
-  const auto& head = setup.robot.robot.head;
-  localization::PointsInformationParams points;
-  points.sensor = setup.ekf.sensor;
-  points.fill = setup.look.fill;
-  return {localization::DiscInformation(head, setup.robot.zoom,
-                                        {setup.ekf.sensor, setup.look.radius_px}),
-          localization::PointsInformation(head, setup.robot.zoom, points)};
+  localization::LandmarkInformationParams params;
+  params.sensor = setup.ekf.sensor;
+  params.radius_px = setup.look.radius_px;
+  params.fill = setup.look.fill;
+  return {setup.robot.robot.head, setup.robot.zoom, params};
 }
 
 std::unique_ptr<localization::Localizer> make_localizer(const std::string& name,

@@ -43,7 +43,7 @@ class PatternFixLocalizer final : public Localizer {
   int count(UpdateStatus status) const { return counts_[static_cast<std::size_t>(status)]; }
 
  private:
-  UpdateResult take_in(const PointsObservation& observation);
+  UpdateResult process(const PointsObservation& observation);
   const FittedPose* upright(const PointsPose& solved, const Landmark& landmark,
                             const SensorSnapshot& sensor) const;
   void believe(const SpatialPose& pose, Stamp stamp);
