@@ -30,7 +30,7 @@ class PolicyAtPositions {
       : setup_(setup),
         visibility_(visibility),
         head_(head),
-        information_(head.geometry, head.zoom, information_params(setup)),
+        information_(head.geometry, head.zoom, information_params(setup), head.ground),
         policy_(planner::make_look_policy(
             policy,
             {setup.look.fixed_landmark, RandomStream(setup.seed, "look policy"),
@@ -99,9 +99,10 @@ PlanTable make_plan(const mission::MissionSetup& setup, const std::string& polic
     throw InputError("--policy fixed: the mission needs the key planner.fixed_landmark");
   const auto& robot = setup.robot.robot;
   const planner::Visibility visibility(setup.world.plan, robot.head, robot.head_limits,
-                                       setup.look.visibility);
+                                       setup.look.visibility, setup.world.ground);
   const planner::HeadModel head{robot.head,           robot.head_limits,  setup.robot.zoom,
-                                setup.look.radius_px, setup.look.dwell_s, setup.look.fill};
+                                setup.look.radius_px, setup.look.dwell_s, setup.look.fill,
+                                setup.world.ground};
   planner::FuzzySupervisors supervisors(setup.look.rules);
   const auto plan = planner::plan_perception(setup.path, setup.world.landmarks, visibility, head,
                                              supervisors, setup.look.perception);

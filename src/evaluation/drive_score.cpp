@@ -29,7 +29,7 @@ void bound_by(const Observation& observation, const mission::MissionSetup& setup
   const auto& angle = truth.look_angle_error;
   const localization::LookBias bias{angle.pan, angle.tilt, truth.look_log_focal_error};
   const Landmark* landmark =
-      true_landmark(observation, setup.world.landmarks, setup.robot.robot.head, truth.pose, bias);
+      true_landmark(observation, setup.world.landmarks, setup.on_ground(), truth.pose, bias);
   if (landmark != nullptr) bound.update(truth.pose, bias, *landmark, observation);
 }
 
@@ -78,7 +78,7 @@ void DriveScorer::on_start(const mission::MissionSetup& setup, std::uint64_t see
   impl_->score.primary = setup.primary;
   for (std::size_t i = 0; i < setup.localizers.size(); ++i)
     impl_->sums.emplace_back(
-        PosteriorBound(setup.prior.covariance, setup.robot.robot.head, setup.robot.robot.sensor));
+        PosteriorBound(setup.prior.covariance, setup.on_ground(), setup.robot.robot.sensor));
   impl_->last_zoom_mm = setup.robot.initial_zoom_mm;
 }
 

@@ -16,9 +16,9 @@ localization::MeasurementParams measured_with(const SensorNoise& noise) {
 
 }  // namespace
 
-PosteriorBound::PosteriorBound(const Eigen::Matrix3d& prior, const HeadGeometry& geometry,
+PosteriorBound::PosteriorBound(const Eigen::Matrix3d& prior, const RigOnGround& on_ground,
                                const SensorNoise& noise)
-    : model_(LandmarkMap{}, geometry, measured_with(noise)) {
+    : model_(LandmarkMap{}, on_ground, measured_with(noise)) {
   P_.topLeftCorner<3, 3>() = prior;
   begin_look(0);
 }
@@ -40,8 +40,8 @@ bool PosteriorBound::update(const Pose2& truth, const localization::LookBias& bi
   const auto match = model_.match(observation, landmark);
   if (!match) return false;
   return model_.linearise(*match, localization::state_vector(truth, bias), [&](const auto& seen) {
-    const LookId look = sensor_of(observation).look;
-    if (look != look_) begin_look(look);
+    const Shot& shot = shot_of(observation);
+    if (shot.look != look_ && model_.has_look_biases(shot.camera)) begin_look(shot.look);
     P_ = localization::updated_covariance(P_, seen);
     assert(P_.allFinite());
   });

@@ -6,12 +6,12 @@ namespace vigia::evaluation {
 namespace {
 
 const Landmark* nearest_disc(const EllipseObservation& seen, const LandmarkMap& map,
-                             const HeadGeometry& geometry, const Pose2& truth,
+                             const RigOnGround& on_ground, const Pose2& truth,
                              const localization::LookBias& bias) {
   const Landmark* nearest = nullptr;
   double min_px = seen.ellipse.a;
   for (const Landmark& landmark : map.all()) {
-    const auto image = localization::predict_disc(landmark, seen.sensor, geometry, truth, bias);
+    const auto image = localization::predict_disc(landmark, seen.shot, on_ground, truth, bias);
     if (!image) continue;
     const double off_px =
         (image->z.head<2>() - Eigen::Vector2d(seen.ellipse.u, seen.ellipse.v)).norm();
@@ -25,11 +25,11 @@ const Landmark* nearest_disc(const EllipseObservation& seen, const LandmarkMap& 
 }  // namespace
 
 const Landmark* true_landmark(const Observation& observation, const LandmarkMap& map,
-                              const HeadGeometry& geometry, const Pose2& truth,
+                              const RigOnGround& on_ground, const Pose2& truth,
                               const localization::LookBias& bias) {
   return std::visit(
       Overloaded{[&](const EllipseObservation& seen) {
-                   return nearest_disc(seen, map, geometry, truth, bias);
+                   return nearest_disc(seen, map, on_ground, truth, bias);
                  },
                  [&](const PointsObservation& seen) { return map.find(seen.landmark); }},
       observation);

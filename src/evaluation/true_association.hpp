@@ -1,9 +1,9 @@
 #pragma once
 
-#include "vigia/core/head.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/core/observation.hpp"
 #include "vigia/core/pose.hpp"
+#include "vigia/core/rig.hpp"
 #include "vigia/localization/disc_model.hpp"
 
 namespace vigia::evaluation {
@@ -12,7 +12,7 @@ namespace vigia::evaluation {
 /// true errors of the look's readings: the one that it names, or of the discs the one whose image
 /// lies nearest to the ellipse's centre and inside it. nullptr when it shows none of the map.
 const Landmark* true_landmark(const Observation& observation, const LandmarkMap& map,
-                              const HeadGeometry& geometry, const Pose2& truth,
+                              const RigOnGround& on_ground, const Pose2& truth,
                               const localization::LookBias& bias);
 
 }  // namespace vigia::evaluation

@@ -41,27 +41,27 @@ Eigen::Matrix3d with_floor(Eigen::Matrix3d R, const MeasurementParams& params) {
 /// The whole of what the ellipse says, size included.
 DiscMatch full_match(const MeasurementModel& model, const EllipseObservation& observation,
                      const Landmark& landmark) {
-  return {observation.sensor, landmark, measured_disc(observation),
+  return {observation.shot, landmark, measured_disc(observation),
           with_floor(measured_disc_covariance(observation), model.params())};
 }
 
-Eigen::Isometry3d camera_at(const MeasurementModel& model, const Pose2& pose,
-                            const HeadAngles& head) {
-  return to_isometry(pose) * camera_in_base(model.geometry(), head);
+Eigen::Vector3d eye_at(const MeasurementModel& model, const Pose2& pose, const Shot& shot) {
+  return model.on_ground().wMc(shot.camera, shot.head, pose).translation();
 }
 
 /// Whether the landmark is hidden from the believed pose and from all of the places two sigmas
 /// around it: near the edge of a wall the belief cannot tell.
-bool surely_hidden(const MeasurementModel& model, const LookState& state, const HeadAngles& head,
+bool surely_hidden(const MeasurementModel& model, const LookState& state, const Shot& shot,
                    const Landmark& landmark) {
-  const Eigen::Vector3d eye = camera_at(model, state.pose(), head).translation();
+  const Eigen::Vector3d eye = eye_at(model, state.pose(), shot);
   if (!model.hides(eye, landmark.centre_w())) return false;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
   axes.computeDirect(state.covariance.topLeftCorner<2, 2>());
+  const Eigen::Matrix<double, 3, 2> dp_dxy =
+      model.on_ground().ground.dplace_dpose(state.pose()).topLeftCorner<3, 2>();
   for (Eigen::Index i = 0; i < 2; ++i) {
     const double sigma = std::sqrt(std::max(0.0, axes.eigenvalues()(i)));
-    Eigen::Vector3d step = Eigen::Vector3d::Zero();
-    step.head<2>() = 2.0 * sigma * axes.eigenvectors().col(i);
+    const Eigen::Vector3d step = dp_dxy * (2.0 * sigma * axes.eigenvectors().col(i));
     if (!model.hides(eye + step, landmark.centre_w()) ||
         !model.hides(eye - step, landmark.centre_w()))
       return false;
@@ -100,7 +100,7 @@ Candidates candidates(const MeasurementModel& model, const EllipseObservation& o
     found.any_image = true;
     found.best_nis = std::min(found.best_nis, candidate.nis);
     if (candidate.nis > gate) continue;
-    if (surely_hidden(model, state, observation.sensor.head, landmark)) continue;
+    if (surely_hidden(model, state, observation.shot, landmark)) continue;
     found.inside_gate.push_back(candidate);
   }
   std::stable_sort(found.inside_gate.begin(), found.inside_gate.end(),
@@ -140,7 +140,7 @@ std::optional<DiscMatch> match(const MeasurementModel& model, const EllipseObser
 
 std::optional<Linearised<3>> linearise(const MeasurementModel& model, const DiscMatch& match,
                                        const Vector6& at) {
-  const auto image = predict_disc(match.landmark, match.sensor, model.geometry(),
+  const auto image = predict_disc(match.landmark, match.shot, model.on_ground(),
                                   Pose2::from_vector(at.head<3>()), {at(3), at(4), at(5)});
   if (!image) return std::nullopt;
   const double reading = model.params().sensor.reading_angle;
@@ -149,13 +149,14 @@ std::optional<Linearised<3>> linearise(const MeasurementModel& model, const Disc
   seen.H << image->dz_dpose, image->dz_dbias;
   seen.y = match.z - image->z;
   seen.R = match.R + reading * reading * J * J.transpose();
+  if (!model.has_look_biases(match.shot.camera)) seen.H.rightCols<3>().setZero();
   return seen;
 }
 
 std::optional<double> log_likelihood(const MeasurementModel& model,
                                      const EllipseObservation& observation, const Pose2& pose) {
   const Eigen::Matrix3d biases = look_covariance(model.params().sensor);
-  const Eigen::Vector3d eye = camera_at(model, pose, observation.sensor.head).translation();
+  const Eigen::Vector3d eye = eye_at(model, pose, observation.shot);
   std::optional<double> best;
   for (const Landmark& landmark : model.map().all()) {
     const auto known = match(model, observation, landmark);

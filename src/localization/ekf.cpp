@@ -28,10 +28,10 @@ double fraction_at(const OdometryIncrement& u, Stamp stamp) {
   return (stamp - u.from).seconds() / (u.to - u.from).seconds();
 }
 
-/// The readings that came with an image; nullptr for an increment.
-const SensorSnapshot* readings_of(const LookInput& input) {
+/// The shot of an image; nullptr for an increment.
+const Shot* shot_of(const LookInput& input) {
   const auto* match = std::get_if<Match>(&input);
-  return match == nullptr ? nullptr : &sensor_of(*match);
+  return match == nullptr ? nullptr : &shot_of(*match);
 }
 
 bool is_image(const LookInput& input) {
@@ -40,10 +40,10 @@ bool is_image(const LookInput& input) {
 
 }  // namespace
 
-EkfLocalizer::EkfLocalizer(LandmarkMap map, const HeadGeometry& geometry, const EkfParams& params,
+EkfLocalizer::EkfLocalizer(LandmarkMap map, const RigOnGround& on_ground, const EkfParams& params,
                            std::optional<FloorPlan> plan)
     : params_(params),
-      model_(std::move(map), geometry, measurement_params(params), std::move(plan)),
+      model_(std::move(map), on_ground, measurement_params(params), std::move(plan)),
       nis_limits_(static_cast<std::size_t>(kMaxDof * params.nis_looks) + 1),
       mean_speed_(params.odometry) {
   for (std::size_t dof = 1; dof < nis_limits_.size(); ++dof)
@@ -73,7 +73,7 @@ void EkfLocalizer::predict(const OdometryIncrement& increment) {
   const std::vector<LookInput> ahead = drop_extrapolated();
   append(Motion{increment, mean_speed_.at_mean_speed(increment)});
   for (const LookInput& fix : ahead) {
-    const std::vector<Event> later = roll_back(readings_of(fix)->stamp);
+    const std::vector<Event> later = roll_back(shot_of(fix)->stamp);
     append(fix);
     for (const Event& event : later) append(event.input, event.extrapolated);
   }
@@ -91,18 +91,18 @@ UpdateResult EkfLocalizer::update(const Observation& observation) {
 }
 
 UpdateResult EkfLocalizer::process(const Observation& observation) {
-  const SensorSnapshot& sensor = vigia::sensor_of(observation);
-  if (sensor.stamp < horizon_) return {UpdateStatus::too_late, std::nullopt, 0.0, 0};
-  const std::vector<Event> later = roll_back(sensor.stamp);
-  const bool first_of_look = state().look != sensor.look;
-  const LookState at = with_look(state(), sensor.look);
+  const Shot& shot = vigia::shot_of(observation);
+  if (shot.stamp < horizon_) return {UpdateStatus::too_late, std::nullopt, 0.0, 0};
+  const std::vector<Event> later = roll_back(shot.stamp);
+  const bool first_of_look = state().look != shot.look;
+  const LookState at = with_look(state(), shot);
   Association found = model_.associate(observation, at);
   if (found.match)
     append(*std::move(found.match));
   else if (!events_.empty() && events_.back().extrapolated)
     events_.pop_back();
   for (const Event& event : later) append(event.input, event.extrapolated);
-  monitor_innovations(found.result, sensor.look, first_of_look);
+  monitor_innovations(found.result, shot.look, first_of_look);
   return found.result;
 }
 
@@ -111,7 +111,7 @@ void EkfLocalizer::append(const LookInput& input, bool extrapolated) {
   if (const auto* motion = std::get_if<Motion>(&input))
     move_by(*motion, event);
   else
-    fuse(*readings_of(input), event);
+    fuse(*shot_of(input), event);
   assert(event.after.mean.allFinite() && event.after.covariance.allFinite());
   events_.push_back(std::move(event));
 }
@@ -123,16 +123,16 @@ void EkfLocalizer::move_by(const Motion& motion, Event& event) const {
   if ((motion.increment.to - window.last_image).seconds() > kLookPause) window = {};
 }
 
-void EkfLocalizer::fuse(const SensorSnapshot& sensor, Event& event) const {
+void EkfLocalizer::fuse(const Shot& shot, Event& event) const {
   Window& window = event.window;
-  event.after = with_look(event.after, sensor.look);
-  if (window.events == 0 || window.start.look != sensor.look) {
+  event.after = with_look(event.after, shot);
+  if (window.events == 0 || window.start.look != shot.look) {
     window = {};
     window.start = event.after;
   }
   ++window.events;
   ++window.images;
-  window.last_image = sensor.stamp;
+  window.last_image = shot.stamp;
   auto smoothed = smooth_look(window.start, inputs_of_look(event), guess_of_look(event),
                               {model_, params_.odometry}, params_.iterations, params_.converged);
   if (!smoothed) {
@@ -176,8 +176,9 @@ std::vector<Vector6> EkfLocalizer::guess_of_look(const Event& event) const {
   return guess;
 }
 
-LookState EkfLocalizer::with_look(const LookState& state, LookId look) const {
-  return state.look == look ? state : begin_look(state, look, params_.sensor);
+LookState EkfLocalizer::with_look(const LookState& state, const Shot& shot) const {
+  const bool same = state.look == shot.look || !model_.has_look_biases(shot.camera);
+  return same ? state : begin_look(state, shot.look, params_.sensor);
 }
 
 std::vector<EkfLocalizer::Event> EkfLocalizer::roll_back(Stamp stamp) {

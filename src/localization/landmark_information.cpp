@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -28,9 +27,13 @@ Eigen::Matrix3d information_of(const Linearised<Rows>& seen, const Eigen::Matrix
 
 }  // namespace
 
-LandmarkInformation::LandmarkInformation(const HeadGeometry& geometry, ZoomCalibration zoom,
-                                         const LandmarkInformationParams& params)
-    : zoom_(std::move(zoom)), params_(params), model_(LandmarkMap{}, geometry, averaged(params)) {}
+LandmarkInformation::LandmarkInformation(const HeadGeometry& geometry, const ZoomCalibration& zoom,
+                                         const LandmarkInformationParams& params,
+                                         const Ground& ground)
+    : geometry_(geometry),
+      zoom_(zoom),
+      params_(params),
+      model_(LandmarkMap{}, {head_rig(geometry, zoom), ground}, averaged(params)) {}
 
 std::optional<Eigen::Matrix3d> LandmarkInformation::look_information(const Landmark& landmark,
                                                                      const Pose2& pose) const {
@@ -47,30 +50,30 @@ std::optional<Eigen::Matrix3d> LandmarkInformation::look_information(const Landm
   return information;
 }
 
-/// The sensor of a head that aims at the landmark, the zoom at @p focal_per_metre (px) times the
+/// The shot of a head that aims at the landmark, the zoom at @p focal_per_metre (px) times the
 /// range.
-SensorSnapshot LandmarkInformation::aimed_sensor(const Landmark& landmark, const Pose2& pose,
-                                                 double focal_per_metre) const {
-  const Eigen::Vector3d p_r = to_isometry(pose).inverse() * landmark.centre_w();
-  SensorSnapshot sensor;
-  sensor.head = aim_at(model_.geometry(), p_r);
-  const double range = (camera_in_base(model_.geometry(), sensor.head).translation() - p_r).norm();
-  sensor.zoom_mm = zoom_.zoom_for_focal(focal_per_metre * range);
-  sensor.intrinsics = zoom_.at(sensor.zoom_mm);
-  return sensor;
+Shot LandmarkInformation::aimed_shot(const Landmark& landmark, const Pose2& pose,
+                                     double focal_per_metre) const {
+  const Eigen::Vector3d p_r = model_.on_ground().ground.place(pose).inverse() * landmark.centre_w();
+  Shot shot;
+  shot.head = aim_at(geometry_, p_r);
+  const double range = (camera_in_base(geometry_, shot.head).translation() - p_r).norm();
+  shot.zoom_mm = zoom_.zoom_for_focal(focal_per_metre * range);
+  shot.model = zoom_.at(shot.zoom_mm);
+  return shot;
 }
 
 std::optional<Match> LandmarkInformation::expected_disc(const Landmark& landmark,
                                                         const DiscShape& disc,
                                                         const Pose2& pose) const {
-  const SensorSnapshot sensor = aimed_sensor(landmark, pose, params_.radius_px / disc.radius_m);
-  const auto image = predict_disc(landmark, sensor, model_.geometry(), pose, {});
+  const Shot shot = aimed_shot(landmark, pose, params_.radius_px / disc.radius_m);
+  const auto image = predict_disc(landmark, shot, model_.on_ground(), pose, {});
   if (!image) return std::nullopt;
   const double size_px = std::exp(image->z(2));
-  if (!in_image(sensor.intrinsics, image->z.head<2>(), size_px)) return std::nullopt;
+  if (!in_image(pinhole(shot), image->z.head<2>(), size_px)) return std::nullopt;
   const double sigma_px = params_.disc_sigma_px;
   const Eigen::Vector3d sigma(sigma_px, sigma_px, sigma_px / (std::sqrt(2.0) * size_px));
-  return DiscMatch{sensor, landmark, image->z, sigma.cwiseAbs2().asDiagonal()};
+  return DiscMatch{shot, landmark, image->z, sigma.cwiseAbs2().asDiagonal()};
 }
 
 std::optional<Match> LandmarkInformation::expected_points(const Landmark& landmark,
@@ -80,15 +83,15 @@ std::optional<Match> LandmarkInformation::expected_points(const Landmark& landma
   for (const LandmarkPoint& point : points)
     reach_m = std::max(reach_m, point.centre_l.norm() + point.radius_m);
   const double reach_px = params_.fill * 0.5 * zoom_.at(zoom_.min_zoom_mm()).height;
-  const SensorSnapshot sensor = aimed_sensor(landmark, pose, reach_px / reach_m);
-  const Eigen::Isometry3d wMc = to_isometry(pose) * camera_in_base(model_.geometry(), sensor.head);
+  const Shot shot = aimed_shot(landmark, pose, reach_px / reach_m);
+  const Eigen::Isometry3d wMc = model_.on_ground().wMc(shot.camera, shot.head, pose);
   const Eigen::Isometry3d cMl = wMc.inverse() * landmark.wMl;
   const double variance = params_.point_sigma_px * params_.point_sigma_px / params_.frames_per_look;
-  PointsMatch match{sensor, landmark, {}};
+  PointsMatch match{shot, landmark, {}};
   for (const LandmarkPoint& point : points) {
-    const auto image = predict_point(point, sensor.intrinsics, cMl);
-    const double size_px = sensor.intrinsics.px * point.radius_m / cMl.translation().z();
-    if (!image || !in_image(sensor.intrinsics, image->uv, size_px)) return std::nullopt;
+    const auto image = predict_point(point, pinhole(shot), cMl);
+    const double size_px = pinhole(shot).px * point.radius_m / cMl.translation().z();
+    if (!image || !in_image(pinhole(shot), image->uv, size_px)) return std::nullopt;
     match.points.push_back({point, image->uv, Eigen::Matrix2d::Identity() / variance});
   }
   return match;

@@ -89,7 +89,7 @@ bool pass(const Match& match, const Vector6& at, const LookModel& model, LookSta
           StepLinearised& about) {
   const bool seen = model.measurement.linearise(
       match, at, [&](const auto& image) { update(image, wrapped(state.mean - at), state, about); });
-  if (seen) state.stamp = std::max(state.stamp, sensor_of(match).stamp);
+  if (seen) state.stamp = std::max(state.stamp, shot_of(match).stamp);
   return seen;
 }
 

@@ -6,13 +6,13 @@
 
 namespace vigia::localization {
 
-const SensorSnapshot& sensor_of(const Match& match) {
-  return std::visit([](const auto& one) -> const SensorSnapshot& { return one.sensor; }, match);
+const Shot& shot_of(const Match& match) {
+  return std::visit([](const auto& one) -> const Shot& { return one.shot; }, match);
 }
 
-MeasurementModel::MeasurementModel(LandmarkMap map, const HeadGeometry& geometry,
+MeasurementModel::MeasurementModel(LandmarkMap map, const RigOnGround& on_ground,
                                    const MeasurementParams& params, std::optional<FloorPlan> plan)
-    : map_(std::move(map)), geometry_(geometry), params_(params), plan_(std::move(plan)) {
+    : map_(std::move(map)), on_ground_(on_ground), params_(params), plan_(std::move(plan)) {
   for (int dof = 1; dof <= kTabledDof; ++dof)
     gates_[static_cast<std::size_t>(dof)] = chi_square_quantile(params.gate_probability, dof);
 }
@@ -43,6 +43,10 @@ std::optional<double> MeasurementModel::log_likelihood(const Observation& observ
   return std::visit(
       [&](const auto& seen) { return localization::log_likelihood(*this, seen, pose); },
       observation);
+}
+
+bool MeasurementModel::has_look_biases(CameraId camera) const {
+  return std::holds_alternative<HeadGeometry>(on_ground_.rig.at(camera).mount);
 }
 
 bool MeasurementModel::hides(const Eigen::Vector3d& from_w, const Eigen::Vector3d& to_w) const {

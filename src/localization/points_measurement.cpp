@@ -70,7 +70,7 @@ AssociationOf<PointsMatch> associate(const MeasurementModel& model,
 
 std::optional<PointsMatch> match(const MeasurementModel& model,
                                  const PointsObservation& observation, const Landmark& landmark) {
-  PointsMatch match{observation.sensor, landmark,
+  PointsMatch match{observation.shot, landmark,
                     seen_points(landmark, observation, model.params().centre_floor_px)};
   if (match.points.empty()) return std::nullopt;
   return match;
@@ -78,9 +78,8 @@ std::optional<PointsMatch> match(const MeasurementModel& model,
 
 std::optional<Linearised<6>> linearise(const MeasurementModel& model, const PointsMatch& match,
                                        const Vector6& at) {
-  const auto image =
-      measure_points(match.points, match.landmark.wMl, match.sensor, model.geometry(),
-                     Pose2::from_vector(at.head<3>()), {at(3), at(4), at(5)});
+  const auto image = measure_points(match.points, match.landmark.wMl, match.shot, model.on_ground(),
+                                    Pose2::from_vector(at.head<3>()), {at(3), at(4), at(5)});
   if (!image) return std::nullopt;
   const double reading = model.params().sensor.reading_angle;
   const Eigen::Matrix<double, 6, 2> J = image->H.middleCols<2>(3);
@@ -92,6 +91,7 @@ std::optional<Linearised<6>> linearise(const MeasurementModel& model, const Poin
   seen.rank = std::min(kMaxRank, static_cast<int>(measured));
   seen.scatter = image->chi2 - image->y.squaredNorm();
   seen.scatter_dof = 2 * static_cast<int>(match.points.size()) - seen.rank;
+  if (!model.has_look_biases(match.shot.camera)) seen.H.rightCols<3>().setZero();
   return seen;
 }
 

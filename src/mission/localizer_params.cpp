@@ -19,7 +19,7 @@ localization::LandmarkInformation landmark_information(const MissionSetup& setup
   params.sensor = setup.ekf.sensor;
   params.radius_px = setup.look.radius_px;
   params.fill = setup.look.fill;
-  return {setup.robot.robot.head, setup.robot.zoom, params};
+  return {setup.robot.robot.head, setup.robot.zoom, params, setup.world.ground};
 }
 
 std::unique_ptr<localization::Localizer> make_localizer(const std::string& name,
@@ -28,8 +28,8 @@ std::unique_ptr<localization::Localizer> make_localizer(const std::string& name,
     return std::make_unique<localization::OdometryLocalizer>(setup.ekf.odometry);
   if (name == "pattern_fix")
     return std::make_unique<localization::PatternFixLocalizer>(
-        setup.world.landmarks, setup.robot.robot.head, pattern_fix_params(setup));
-  return std::make_unique<localization::EkfLocalizer>(setup.world.landmarks, setup.robot.robot.head,
+        setup.world.landmarks, setup.on_ground(), pattern_fix_params(setup));
+  return std::make_unique<localization::EkfLocalizer>(setup.world.landmarks, setup.on_ground(),
                                                       setup.ekf, setup.world.plan);
 }
 

@@ -34,9 +34,9 @@ void run(const DriveNoise& noise, std::uint64_t seed, PointsCampaign& campaign) 
   params.odometry = noise.odometry;
   params.sensor = noise.sensor;
   params.centre_floor_px = 0.0;
-  EkfLocalizer ekf(map, drive.geometry, params, localization::test::room_plan());
+  EkfLocalizer ekf(map, {head_rig(drive.geometry), {}}, params, localization::test::room_plan());
   ekf.reset({}, drive.prior);
-  PosteriorBound bound(drive.prior.covariance, drive.geometry, noise.sensor);
+  PosteriorBound bound(drive.prior.covariance, {head_rig(drive.geometry), {}}, noise.sensor);
   campaign.nees.emplace_back();
   campaign.errors.push_back(0.0);
   campaign.bounds.push_back(0.0);

@@ -35,8 +35,8 @@ TEST(LandmarkInformation, OfADiscEqualsWhatOneLookTeachesTheFilter) {
   const Eigen::Matrix3d prior = sigma.cwiseAbs2().asDiagonal();
   ekf.reset({}, {kHere, prior});
   RandomStream random(1, "unused");
-  const SensorSnapshot sensor = test::aimed_sensor(landmark, {}, kHere, {}, 1, {});
-  EllipseObservation seen = test::observe(landmark, sensor, {}, kHere, {}, 0.0, 0.0, random);
+  const Shot shot = test::aimed_shot(landmark, {}, kHere, {}, 1, {});
+  EllipseObservation seen = test::observe(landmark, shot, {}, kHere, {}, 0.0, 0.0, random);
   seen.covariance = 0.02 * 0.02 * Eigen::Matrix<double, 5, 5>::Identity();
   ASSERT_EQ(ekf.update(seen).status, UpdateStatus::fused);
   const Eigen::Matrix3d expected = (prior.inverse() + *taught).inverse();
@@ -71,19 +71,19 @@ TEST(LandmarkInformation, OfPointsEqualsWhatOneImageTeachesTheFilter) {
     const Eigen::Vector3d sigma(0.05, 0.05, from_deg(1.0));
     const Eigen::Matrix3d prior = sigma.cwiseAbs2().asDiagonal();
     ekf.reset({}, {kHere, prior});
-    SensorSnapshot sensor;
-    sensor.look = 1;
-    sensor.head = aim_at({}, to_isometry(kHere).inverse() * landmark.centre_w());
+    Shot shot;
+    shot.look = 1;
+    shot.head = aim_at({}, to_isometry(kHere).inverse() * landmark.centre_w());
     const double range =
         (to_isometry(kHere) * Eigen::Vector3d(0.15, 0.0, 1.0) - landmark.centre_w()).norm();
     double reach = 0.0;
     for (const LandmarkPoint& point : landmark_points(landmark))
       reach = std::max(reach, point.centre_l.norm() + point.radius_m);
     const ZoomCalibration zoom = test::zoom_calibration();
-    sensor.intrinsics = zoom.at(zoom.zoom_for_focal(0.8 * 240.0 * range / reach));
+    shot.model = zoom.at(zoom.zoom_for_focal(0.8 * 240.0 * range / reach));
     RandomStream random(1, "unused");
     PointsObservation seen =
-        test::observe_points(landmark, sensor, {}, to_isometry(kHere), {}, 0.0, 0.0, random);
+        test::observe_points(landmark, shot, {}, to_isometry(kHere), {}, 0.0, 0.0, random);
     for (LabelledPoint& point : seen.points) point.covariance = 0.01 * Eigen::Matrix2d::Identity();
     ASSERT_EQ(ekf.update(seen).status, UpdateStatus::fused);
     const Eigen::Matrix3d expected = (prior.inverse() + *taught).inverse();

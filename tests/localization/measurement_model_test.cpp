@@ -30,16 +30,16 @@ EllipseObservation ellipse_of_4() {
   RandomStream random(3, "ellipse");
   const Landmark landmark = *test::room_landmarks().find(4);
   const LookBias bias{0.002, -0.003, 0.002};
-  const auto sensor = test::aimed_sensor(landmark, {}, kTruth, bias, 1, {});
-  return test::observe(landmark, sensor, {}, kTruth, bias, 0.0, 0.05, random);
+  const auto shot = test::aimed_shot(landmark, {}, kTruth, bias, 1, {});
+  return test::observe(landmark, shot, {}, kTruth, bias, 0.0, 0.05, random);
 }
 
 PointsObservation points_of_4() {
   RandomStream random(3, "points");
   const Landmark landmark = *test::room_points().find(4);
   const LookBias bias{0.002, -0.003, 0.002};
-  const auto sensor = test::aimed_sensor(*test::room_landmarks().find(4), {}, kTruth, bias, 1, {});
-  return test::observe_points(landmark, sensor, {}, to_isometry(kTruth), bias, 0.0, 0.05, random);
+  const auto shot = test::aimed_shot(*test::room_landmarks().find(4), {}, kTruth, bias, 1, {});
+  return test::observe_points(landmark, shot, {}, to_isometry(kTruth), bias, 0.0, 0.05, random);
 }
 
 LookState state_at(const Pose2& pose) {
@@ -102,7 +102,7 @@ TEST(MeasurementModel, TheLikelihoodOfADiscIsTheGaussianWithTheHeadsErrorsMargin
   const EllipseObservation seen = ellipse_of_4();
   const Pose2 pose{4.01, 2.99, 0.203};
   const auto image = [&](const LookBias& bias) -> Eigen::VectorXd {
-    return predict_disc(*model.map().find(4), seen.sensor, {}, pose, bias)->z;
+    return predict_disc(*model.map().find(4), seen.shot, {}, pose, bias)->z;
   };
   Eigen::Matrix3d R = measured_disc_covariance(seen);
   R.diagonal() += Eigen::Vector3d(1e-4, 1e-4, 1e-8);
@@ -118,11 +118,11 @@ TEST(MeasurementModel, TheLikelihoodOfPointsIsThatOfAllPixelsWithTheHeadsErrorsM
   const Landmark& landmark = *model.map().find(4);
   const Pose2 pose{4.002, 2.999, 0.201};
   const auto image = [&](const LookBias& bias) -> Eigen::VectorXd {
-    const HeadAngles head{seen.sensor.head.pan + bias.pan, seen.sensor.head.tilt + bias.tilt};
-    Intrinsics lens = seen.sensor.intrinsics;
+    const HeadAngles head{seen.shot.head.pan + bias.pan, seen.shot.head.tilt + bias.tilt};
+    Intrinsics lens = pinhole(seen.shot);
     lens.px *= std::exp(bias.log_focal);
     lens.py *= std::exp(bias.log_focal);
-    const Eigen::Isometry3d wMc = to_isometry(pose) * camera_in_base({}, head);
+    const Eigen::Isometry3d wMc = to_isometry(pose) * camera_in_base(HeadGeometry{}, head);
     Eigen::VectorXd uv(2 * static_cast<Eigen::Index>(seen.points.size()));
     Eigen::Index i = 0;
     for (const LandmarkPoint& point : landmark_points(landmark)) {
@@ -174,7 +174,7 @@ TEST(MeasurementModel, AssociatesAnyKindWithTheLandmarkThatItShows) {
     EXPECT_EQ(found.result.status, UpdateStatus::fused);
     EXPECT_EQ(found.result.landmark, 4);
     ASSERT_TRUE(found.match);
-    EXPECT_EQ(sensor_of(*found.match).look, 1);
+    EXPECT_EQ(shot_of(*found.match).look, 1);
   }
 }
 

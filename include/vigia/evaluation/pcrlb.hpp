@@ -19,7 +19,7 @@ namespace vigia::evaluation {
 class PosteriorBound {
  public:
   /// @p prior: covariance of (x, y, θ) at the start. @p noise: of the head's and zoom's readings.
-  PosteriorBound(const Eigen::Matrix3d& prior, const HeadGeometry& geometry,
+  PosteriorBound(const Eigen::Matrix3d& prior, const RigOnGround& on_ground,
                  const SensorNoise& noise);
 
   /// Moves from the true pose @p truth by the true @p increment, whose odometry has the covariance

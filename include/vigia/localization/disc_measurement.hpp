@@ -9,7 +9,7 @@ namespace vigia::localization {
 
 /// An image of a disc whose landmark is known.
 struct DiscMatch {
-  SensorSnapshot sensor;
+  Shot shot;
   Landmark landmark;
   Eigen::Vector3d z;  ///< as measured_disc()
   Eigen::Matrix3d R;  ///< of z in the image; the white part of the readings comes on top

@@ -66,7 +66,7 @@ struct EkfParams {
 class EkfLocalizer final : public Localizer {
  public:
   /// @p plan, when given, rules out landmarks behind walls.
-  EkfLocalizer(LandmarkMap map, const HeadGeometry& geometry, const EkfParams& params,
+  EkfLocalizer(LandmarkMap map, const RigOnGround& on_ground, const EkfParams& params,
                std::optional<FloorPlan> plan = std::nullopt);
 
   std::string_view name() const override { return "ekf"; }
@@ -102,10 +102,10 @@ class EkfLocalizer final : public Localizer {
   UpdateResult process(const Observation& observation);
   void append(const LookInput& input, bool extrapolated = false);
   void move_by(const Motion& motion, Event& event) const;
-  void fuse(const SensorSnapshot& sensor, Event& event) const;
+  void fuse(const Shot& shot, Event& event) const;
   std::vector<const LookInput*> inputs_of_look(const Event& event) const;
   std::vector<Vector6> guess_of_look(const Event& event) const;
-  LookState with_look(const LookState& state, LookId look) const;
+  LookState with_look(const LookState& state, const Shot& shot) const;
   std::vector<Event> roll_back(Stamp stamp);
   void extrapolate(Stamp stamp);
   std::vector<LookInput> drop_extrapolated();

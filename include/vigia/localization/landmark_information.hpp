@@ -23,8 +23,8 @@ struct LandmarkInformationParams {
 /// would be cut by the border.
 class LandmarkInformation final : public InformationModel {
  public:
-  LandmarkInformation(const HeadGeometry& geometry, ZoomCalibration zoom,
-                      const LandmarkInformationParams& params);
+  LandmarkInformation(const HeadGeometry& geometry, const ZoomCalibration& zoom,
+                      const LandmarkInformationParams& params, const Ground& ground = {});
 
   std::optional<Eigen::Matrix3d> look_information(const Landmark& landmark,
                                                   const Pose2& pose) const override;
@@ -33,9 +33,9 @@ class LandmarkInformation final : public InformationModel {
   std::optional<Match> expected_disc(const Landmark& landmark, const DiscShape& disc,
                                      const Pose2& pose) const;
   std::optional<Match> expected_points(const Landmark& landmark, const Pose2& pose) const;
-  SensorSnapshot aimed_sensor(const Landmark& landmark, const Pose2& pose,
-                              double focal_per_metre) const;
+  Shot aimed_shot(const Landmark& landmark, const Pose2& pose, double focal_per_metre) const;
 
+  HeadGeometry geometry_;
   ZoomCalibration zoom_;
   LandmarkInformationParams params_;
   MeasurementModel model_;

@@ -5,9 +5,9 @@
 #include <variant>
 
 #include "vigia/core/floor_plan.hpp"
-#include "vigia/core/head.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/core/observation.hpp"
+#include "vigia/core/rig.hpp"
 #include "vigia/core/sensor_noise.hpp"
 #include "vigia/localization/disc_measurement.hpp"
 #include "vigia/localization/points_measurement.hpp"
@@ -34,17 +34,17 @@ struct MeasurementParams {
 using Match = std::variant<DiscMatch, PointsMatch>;
 using Association = AssociationOf<Match>;
 
-/// The readings that came with a matched image.
-const SensorSnapshot& sensor_of(const Match& match);
+/// The shot that shows it.
+const Shot& shot_of(const Match& match);
 
-/// What predicted images hang on – map, walls, head and noise – and the one measurement model of
-/// filter, smoother, bound, planner and search. Each kind of observation has a file with the same
-/// functions (disc_measurement.hpp, points_measurement.hpp); the members here visit the kinds
-/// exhaustively: a new alternative of Observation without its functions does not compile.
+/// What predicted images hang on – map, walls, rig, ground and noise – and the one measurement
+/// model of filter, smoother, bound, planner and search. Each kind of observation has a file with
+/// the same functions (disc_measurement.hpp, points_measurement.hpp); the members here visit the
+/// kinds exhaustively: a new alternative of Observation without its functions does not compile.
 class MeasurementModel {
  public:
   /// @p plan, when given, rules out landmarks behind walls.
-  MeasurementModel(LandmarkMap map, const HeadGeometry& geometry, const MeasurementParams& params,
+  MeasurementModel(LandmarkMap map, const RigOnGround& on_ground, const MeasurementParams& params,
                    std::optional<FloorPlan> plan = std::nullopt);
 
   /// Which landmark the image shows, given a Gaussian of the state that carries the biases of the
@@ -61,8 +61,11 @@ class MeasurementModel {
   std::optional<double> log_likelihood(const Observation& observation, const Pose2& pose) const;
 
   const LandmarkMap& map() const { return map_; }
-  const HeadGeometry& geometry() const { return geometry_; }
+  const RigOnGround& on_ground() const { return on_ground_; }
   const MeasurementParams& params() const { return params_; }
+  /// Whether the camera's images of one look share errors of pan, tilt and focal length: one on a
+  /// head. A fixed camera has none, H is zero there.
+  bool has_look_biases(CameraId camera) const;
   /// Whether a wall stands between the two points.
   bool hides(const Eigen::Vector3d& from_w, const Eigen::Vector3d& to_w) const;
   /// The χ² that a right measurement stays below with params().gate_probability.
@@ -72,7 +75,7 @@ class MeasurementModel {
   static constexpr int kTabledDof = 34;  // two for each dot of a pattern
 
   LandmarkMap map_;
-  HeadGeometry geometry_;
+  RigOnGround on_ground_;
   MeasurementParams params_;
   std::optional<FloorPlan> plan_;
   std::array<double, kTabledDof + 1> gates_{};

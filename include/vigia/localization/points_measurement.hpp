@@ -11,7 +11,7 @@ namespace vigia::localization {
 
 /// An image of a landmark that says who it is: a pattern's dots or a tag's corners.
 struct PointsMatch {
-  SensorSnapshot sensor;
+  Shot shot;
   Landmark landmark;
   std::vector<SeenPoint> points;  ///< at least one
 };

@@ -43,7 +43,7 @@ struct Sweep {
   /// The discs, at most a few per landmark. The biases of readings are drawn anew for each look.
   std::vector<EllipseObservation> sightings;
   /// Every direction that was searched, with a find or without one.
-  std::vector<SensorSnapshot> views;
+  std::vector<Shot> views;
 };
 
 enum class RelocalizationStatus {
@@ -64,7 +64,7 @@ struct Relocalization {
 /// landmarks, and discs have a front.
 class Relocalizer {
  public:
-  Relocalizer(LandmarkMap map, FloorPlan plan, const HeadGeometry& geometry,
+  Relocalizer(LandmarkMap map, FloorPlan plan, const RigOnGround& on_ground,
               const RelocalizerParams& params);
 
   /// With a @p prior one sighting is enough, and poses it holds unlikely weigh less; without, at
@@ -99,8 +99,7 @@ class Relocalizer {
   static std::set<LandmarkId> landmarks_of(const std::vector<Sighting>& matches);
   bool plausible(const Sighting& match, const Pose2& pose) const;
   int missed(const Hypothesis& hypothesis, const Sweep& sweep) const;
-  bool should_be_seen(const Landmark& landmark, const Pose2& pose,
-                      const SensorSnapshot& view) const;
+  bool should_be_seen(const Landmark& landmark, const Pose2& pose, const Shot& view) const;
   std::optional<Linearised<3>> linearised(const Sighting& match, const Pose2& pose) const;
 
   RelocalizerParams params_;
