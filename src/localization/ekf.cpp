@@ -1,12 +1,14 @@
 #include "vigia/localization/ekf.hpp"
 
 #include "look_smoother.hpp"
+#include "lost_probability.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <utility>
 
+#include "vigia/core/overloaded.hpp"
 #include "vigia/localization/chi_square.hpp"
 
 namespace vigia::localization {
@@ -30,12 +32,13 @@ double fraction_at(const OdometryIncrement& u, Stamp stamp) {
 
 /// The shot of an image; nullptr for an increment.
 const Shot* shot_of(const LookInput& input) {
-  const auto* match = std::get_if<Match>(&input);
-  return match == nullptr ? nullptr : &shot_of(*match);
+  return std::visit(Overloaded{[](const Motion&) -> const Shot* { return nullptr; },
+                               [](const auto& match) { return &match.shot; }},
+                    input);
 }
 
 bool is_image(const LookInput& input) {
-  return std::holds_alternative<Match>(input);
+  return !std::holds_alternative<Motion>(input);
 }
 
 }  // namespace
@@ -48,17 +51,19 @@ EkfLocalizer::EkfLocalizer(LandmarkMap map, const RigOnGround& on_ground, const 
       mean_speed_(params.odometry) {
   for (std::size_t dof = 1; dof < nis_limits_.size(); ++dof)
     nis_limits_[dof] = chi_square_quantile(1.0 - params.nis_probability, static_cast<double>(dof));
-  reset(Stamp{}, Prior{});
+  reset(Stamp{}, std::nullopt);
 }
 
-void EkfLocalizer::reset(Stamp stamp, const Prior& prior) {
-  base_ = initial_state(stamp, prior, params_.sensor);
+void EkfLocalizer::reset(Stamp stamp, const std::optional<Prior>& prior) {
+  base_ = initial_state(stamp, prior.value_or(anywhere()), params_.sensor);
+  has_prior_ = prior.has_value();
   events_.clear();
   mean_speed_.reset();
   horizon_ = stamp;
   rejections_ = 0;
   rejected_looks_.clear();
   first_of_looks_.clear();
+  innovation_evidence_ = 0.0;
   said_lost_ = false;
   refresh_belief();
 }
@@ -84,7 +89,10 @@ void EkfLocalizer::predict(const OdometryIncrement& increment) {
 UpdateResult EkfLocalizer::update(const Observation& observation) {
   const bool usable = std::visit([](const auto& seen) { return is_usable(seen); }, observation);
   UpdateResult result{UpdateStatus::degenerate, std::nullopt, 0.0, 0};
-  if (usable) result = process(observation);
+  if (!has_prior_)
+    result.status = UpdateStatus::no_prior;
+  else if (usable)
+    result = process(observation);
   ++counts_[static_cast<std::size_t>(result.status)];
   refresh_belief();
   return result;
@@ -98,7 +106,7 @@ UpdateResult EkfLocalizer::process(const Observation& observation) {
   const LookState at = with_look(state(), shot);
   Association found = model_.associate(observation, at);
   if (found.match)
-    append(*std::move(found.match));
+    append(std::visit([](auto& match) { return LookInput(std::move(match)); }, *found.match));
   else if (!events_.empty() && events_.back().extrapolated)
     events_.pop_back();
   for (const Event& event : later) append(event.input, event.extrapolated);
@@ -265,10 +273,13 @@ void EkfLocalizer::monitor_innovations(const UpdateResult& result, LookId look,
   }
   const bool rejected = rejections_ >= params_.lost_rejections &&
                         rejected_looks_.size() >= static_cast<std::size_t>(params_.lost_looks);
-  said_lost_ = said_lost_ || rejected || innovations_are_unlikely();
+  const auto [nis, dof] = innovations_of_looks();
+  if (result.status == UpdateStatus::fused && first_of_look)
+    innovation_evidence_ = tail_evidence(chi_square_tail(nis, dof), params_.nis_probability);
+  said_lost_ = said_lost_ || rejected || nis > nis_limits_[static_cast<std::size_t>(dof)];
 }
 
-bool EkfLocalizer::innovations_are_unlikely() const {
+std::pair<double, int> EkfLocalizer::innovations_of_looks() const {
   double sum = 0.0;
   // Looks to come count as discs.
   int dof = kTypicalDof * (params_.nis_looks - static_cast<int>(first_of_looks_.size()));
@@ -276,7 +287,7 @@ bool EkfLocalizer::innovations_are_unlikely() const {
     sum += first.nis;
     dof += first.dof;
   }
-  return sum > nis_limits_[static_cast<std::size_t>(dof)];
+  return {sum, dof};
 }
 
 void EkfLocalizer::refresh_belief() {
@@ -284,8 +295,14 @@ void EkfLocalizer::refresh_belief() {
   belief_.stamp = now.stamp;
   belief_.pose = now.pose();
   belief_.covariance = now.pose_covariance();
-  const bool lost = said_lost_ || belief_.position_sigma() > params_.lost_sigma_m;
+  const double sigma_m = belief_.position_sigma();
+  const bool says_lost = said_lost_ || !has_prior_;
+  const bool lost = says_lost || sigma_m > params_.lost_sigma_m;
   belief_.status = lost ? BeliefStatus::lost : BeliefStatus::tracking;
+  const double rejected = rejection_probability(rejections_, params_.lost_rejections);
+  belief_.lost_probability = says_lost ? kSaidLost
+                                       : either(probability_of_half_a_metre(sigma_m),
+                                                either(rejected, innovation_evidence_));
 }
 
 }  // namespace vigia::localization

@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "vigia/core/overloaded.hpp"
 #include "vigia/core/plane_geometry.hpp"
 
 namespace vigia::localization {
@@ -85,12 +86,14 @@ void update(const Linearised<N>& image, const Vector6& off, LookState& state,
 }
 
 /// Updates @p state by an image linearised at @p at. False when there is none from there.
-bool pass(const Match& match, const Vector6& at, const LookModel& model, LookState& state,
+template <typename M>
+bool pass(const M& match, const Vector6& at, const LookModel& model, LookState& state,
           StepLinearised& about) {
-  const bool seen = model.measurement.linearise(
-      match, at, [&](const auto& image) { update(image, wrapped(state.mean - at), state, about); });
-  if (seen) state.stamp = std::max(state.stamp, shot_of(match).stamp);
-  return seen;
+  const auto image = linearise(model.measurement, match, at);
+  if (!image) return false;
+  update(*image, wrapped(state.mean - at), state, about);
+  state.stamp = std::max(state.stamp, match.shot.stamp);
+  return true;
 }
 
 /// The filter linearised about @p trajectory. False when a landmark has no image from there.
@@ -104,13 +107,17 @@ bool forward(const LookState& start, const std::vector<const LookInput*>& inputs
     about[k].rows = 0;
     filtered.push_back(k == 0 ? start : filtered.back());
     if (inputs[k] == nullptr) continue;
-    if (const auto* match = std::get_if<Match>(inputs[k])) {
-      if (!pass(*match, trajectory[k], model, filtered[k], about[k])) return false;
-    } else {
-      // An image is the last of the inputs.
-      pass(std::get<Motion>(*inputs[k]), trajectory[k], trajectory[k + 1], model, filtered[k],
-           about[k]);
-    }
+    const bool seen = std::visit(
+        Overloaded{[&](const Motion& motion) {
+                     // An image is the last of the inputs.
+                     pass(motion, trajectory[k], trajectory[k + 1], model, filtered[k], about[k]);
+                     return true;
+                   },
+                   [&](const auto& match) {
+                     return pass(match, trajectory[k], model, filtered[k], about[k]);
+                   }},
+        *inputs[k]);
+    if (!seen) return false;
   }
   return true;
 }

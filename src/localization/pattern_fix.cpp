@@ -1,5 +1,7 @@
 #include "vigia/localization/pattern_fix.hpp"
 
+#include "lost_probability.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -42,14 +44,20 @@ OdometryIncrement rest_of(const OdometryIncrement& u, Stamp stamp) {
 PatternFixLocalizer::PatternFixLocalizer(LandmarkMap map, const RigOnGround& on_ground,
                                          const PatternFixParams& params)
     : map_(std::move(map)), on_ground_(on_ground), params_(params) {
-  reset(Stamp{}, Prior{});
+  reset(Stamp{}, std::nullopt);
 }
 
-void PatternFixLocalizer::reset(Stamp stamp, const Prior& prior) {
+void PatternFixLocalizer::reset(Stamp stamp, const std::optional<Prior>& prior) {
   history_.clear();
   start_ = stamp;
   belief_ = Belief{};
-  believe(on_the_floor(prior, on_ground_.ground), stamp);
+  if (!prior) belief_.status = BeliefStatus::lost;
+  believe(on_the_floor(prior.value_or(anywhere()), on_ground_.ground), stamp);
+}
+
+void PatternFixLocalizer::lose() {
+  belief_.status = BeliefStatus::lost;
+  belief_.lost_probability = kSaidLost;
 }
 
 void PatternFixLocalizer::believe(const SpatialPose& pose, Stamp stamp) {
@@ -58,6 +66,9 @@ void PatternFixLocalizer::believe(const SpatialPose& pose, Stamp stamp) {
   belief_.pose = planar.pose;
   belief_.covariance = planar.covariance;
   belief_.in_space = pose;
+  belief_.lost_probability = belief_.status == BeliefStatus::lost
+                                 ? kSaidLost
+                                 : probability_of_half_a_metre(belief_.position_sigma());
 }
 
 void PatternFixLocalizer::predict(const OdometryIncrement& increment) {

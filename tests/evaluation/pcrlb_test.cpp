@@ -21,7 +21,7 @@ TEST(PosteriorBound, EqualsTheCovarianceOfAFilterThatSitsOnTheTruth) {
   params.centre_floor_px = 0.0;
   params.size_floor = 0.0;
   localization::EkfLocalizer ekf(map, {head_rig(drive.geometry), {}}, params);
-  ekf.reset({}, {drive.start, drive.prior.covariance});
+  ekf.reset({}, Prior{drive.start, drive.prior.covariance});
   PosteriorBound bound(drive.prior.covariance, {head_rig(drive.geometry), {}}, drive.noise.sensor);
   RandomStream random(1, "unused");
   Pose2 before = drive.start;

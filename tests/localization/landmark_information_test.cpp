@@ -33,7 +33,7 @@ TEST(LandmarkInformation, OfADiscEqualsWhatOneLookTeachesTheFilter) {
   EkfLocalizer ekf(test::room_landmarks(), {}, params);
   const Eigen::Vector3d sigma(0.05, 0.05, from_deg(1.0));
   const Eigen::Matrix3d prior = sigma.cwiseAbs2().asDiagonal();
-  ekf.reset({}, {kHere, prior});
+  ekf.reset({}, Prior{kHere, prior});
   RandomStream random(1, "unused");
   const Shot shot = test::aimed_shot(landmark, {}, kHere, {}, 1, {});
   EllipseObservation seen = test::observe(landmark, shot, {}, kHere, {}, 0.0, 0.0, random);
@@ -70,7 +70,7 @@ TEST(LandmarkInformation, OfPointsEqualsWhatOneImageTeachesTheFilter) {
     EkfLocalizer ekf(LandmarkMap({landmark}), {}, params);
     const Eigen::Vector3d sigma(0.05, 0.05, from_deg(1.0));
     const Eigen::Matrix3d prior = sigma.cwiseAbs2().asDiagonal();
-    ekf.reset({}, {kHere, prior});
+    ekf.reset({}, Prior{kHere, prior});
     Shot shot;
     shot.look = 1;
     shot.head = aim_at({}, to_isometry(kHere).inverse() * landmark.centre_w());

@@ -11,7 +11,7 @@
 namespace vigia::localization {
 namespace {
 
-const Pose2 kTruth{4.0, 3.0, 0.2};
+const Pose2 kModelTruth{4.0, 3.0, 0.2};
 
 MeasurementParams coarse() {
   MeasurementParams params;
@@ -25,21 +25,22 @@ MeasurementModel room_model(const LandmarkMap& map, const MeasurementParams& par
   return MeasurementModel(map, {}, params, test::room_plan());
 }
 
-/// Disc 4 and pattern 4 of the room as seen from kTruth, half a look's bias off.
+/// Disc 4 and pattern 4 of the room as seen from kModelTruth, half a look's bias off.
 EllipseObservation ellipse_of_4() {
   RandomStream random(3, "ellipse");
   const Landmark landmark = *test::room_landmarks().find(4);
   const LookBias bias{0.002, -0.003, 0.002};
-  const auto shot = test::aimed_shot(landmark, {}, kTruth, bias, 1, {});
-  return test::observe(landmark, shot, {}, kTruth, bias, 0.0, 0.05, random);
+  const auto shot = test::aimed_shot(landmark, {}, kModelTruth, bias, 1, {});
+  return test::observe(landmark, shot, {}, kModelTruth, bias, 0.0, 0.05, random);
 }
 
 PointsObservation points_of_4() {
   RandomStream random(3, "points");
   const Landmark landmark = *test::room_points().find(4);
   const LookBias bias{0.002, -0.003, 0.002};
-  const auto shot = test::aimed_shot(*test::room_landmarks().find(4), {}, kTruth, bias, 1, {});
-  return test::observe_points(landmark, shot, {}, to_isometry(kTruth), bias, 0.0, 0.05, random);
+  const auto shot = test::aimed_shot(*test::room_landmarks().find(4), {}, kModelTruth, bias, 1, {});
+  return test::observe_points(landmark, shot, {}, to_isometry(kModelTruth), bias, 0.0, 0.05,
+                              random);
 }
 
 LookState state_at(const Pose2& pose) {
@@ -158,10 +159,10 @@ TEST(MeasurementModel, TheLikelihoodIsGreatestAboutTheTruth) {
   const MeasurementModel points = room_model(test::room_points());
   for (const Eigen::Vector3d& off : {Eigen::Vector3d(0.3, 0.0, 0.0), Eigen::Vector3d(0.0, 0.3, 0.0),
                                      Eigen::Vector3d(0.0, 0.0, 0.1)}) {
-    const Pose2 away = Pose2::from_vector(kTruth.vector() + off);
-    EXPECT_GT(*discs.log_likelihood(ellipse_of_4(), kTruth),
+    const Pose2 away = Pose2::from_vector(kModelTruth.vector() + off);
+    EXPECT_GT(*discs.log_likelihood(ellipse_of_4(), kModelTruth),
               *discs.log_likelihood(ellipse_of_4(), away) + 3.0);
-    EXPECT_GT(*points.log_likelihood(points_of_4(), kTruth),
+    EXPECT_GT(*points.log_likelihood(points_of_4(), kModelTruth),
               *points.log_likelihood(points_of_4(), away) + 3.0);
   }
 }
@@ -190,7 +191,7 @@ TEST(MeasurementModel, WithoutTheSizeADiscTellsTwoDirectionsOnly) {
   const MeasurementModel model = room_model(test::room_landmarks(), params);
   const auto match = model.match(ellipse_of_4(), *model.map().find(4));
   ASSERT_TRUE(match);
-  model.linearise(*match, state_vector(kTruth),
+  model.linearise(*match, state_vector(kModelTruth),
                   [](const auto& seen) { EXPECT_GT(seen.R(2, 2), 1e5); });
 }
 

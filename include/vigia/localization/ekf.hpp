@@ -4,6 +4,7 @@
 #include <deque>
 #include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "vigia/core/floor_plan.hpp"
@@ -63,6 +64,12 @@ struct EkfParams {
 /// Discs look all alike: the landmark that a look expects has no privilege over any other. Patterns
 /// and tags say who they are: their points are gated against that landmark alone. What is gated,
 /// ambiguous or otherwise not fused is counted.
+///
+/// It cannot start without a prior. Belief::lost_probability joins three pieces of evidence, each
+/// taken for independent: that a Gaussian error of the claimed σ exceeds half a metre; the
+/// unexplained images in a row, even odds where lost_rejections is reached; and the NIS of the last
+/// looks' first images, α / (α + q) with q its tail probability and α = nis_probability. Once it
+/// has said that it is lost the probability is 0.99.
 class EkfLocalizer final : public Localizer {
  public:
   /// @p plan, when given, rules out landmarks behind walls.
@@ -70,7 +77,7 @@ class EkfLocalizer final : public Localizer {
                std::optional<FloorPlan> plan = std::nullopt);
 
   std::string_view name() const override { return "ekf"; }
-  void reset(Stamp stamp, const Prior& prior) override;
+  void reset(Stamp stamp, const std::optional<Prior>& prior) override;
   void predict(const OdometryIncrement& increment) override;
   UpdateResult update(const Observation& observation) override;
   const Belief& belief() const override { return belief_; }
@@ -111,7 +118,8 @@ class EkfLocalizer final : public Localizer {
   std::vector<LookInput> drop_extrapolated();
   void forget_old();
   void monitor_innovations(const UpdateResult& result, LookId look, bool first_of_look);
-  bool innovations_are_unlikely() const;
+  /// Σ NIS of the first images of the last looks and its degrees of freedom.
+  std::pair<double, int> innovations_of_looks() const;
   void refresh_belief();
 
   EkfParams params_;
@@ -124,10 +132,12 @@ class EkfLocalizer final : public Localizer {
   Stamp horizon_;             ///< what is older comes too late
   Belief belief_;
 
-  std::array<int, 6> counts_{};
+  std::array<int, kUpdateStatuses> counts_{};
   int rejections_ = 0;
   std::set<LookId> rejected_looks_;
   std::deque<UpdateResult> first_of_looks_;  ///< the first fused image of each of the last looks
+  double innovation_evidence_ = 0.0;         ///< that it is lost, by those
+  bool has_prior_ = false;
   bool said_lost_ = false;
 };
 

@@ -7,7 +7,14 @@
 
 namespace vigia::localization {
 
+template <typename Matches>
+struct MotionOr;
+template <typename... Matches>
+struct MotionOr<std::variant<Matches...>> {
+  using type = std::variant<Motion, Matches...>;
+};
+
 /// What moves the state of a look on: an increment, or an image whose landmark is known.
-using LookInput = std::variant<Motion, Match>;
+using LookInput = MotionOr<Match>::type;
 
 }  // namespace vigia::localization
