@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "vigia/core/belief.hpp"
-#include "vigia/core/head.hpp"
+#include "vigia/core/rig.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/core/sensor_noise.hpp"
 #include "vigia/imaging/canvas.hpp"

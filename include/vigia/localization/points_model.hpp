@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "vigia/core/camera.hpp"
-#include "vigia/core/head.hpp"
+#include "vigia/core/rig.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/core/observation.hpp"
 #include "vigia/core/pose.hpp"

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "vigia/core/belief.hpp"
-#include "vigia/core/head.hpp"
+#include "vigia/core/rig.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/core/observation.hpp"
 #include "vigia/core/odometry.hpp"
