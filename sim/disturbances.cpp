@@ -11,7 +11,7 @@ double degrees(MapReader& reader, const std::string& key, Range range, double fa
 
 void read(MapReader& r, MotionBlurParams& p) {
   p.exposure_s = r.number("exposure_s", {0.0, 1.0}, p.exposure_s);
-  p.most_instants = static_cast<int>(r.integer("most_instants", {1, 256}, p.most_instants));
+  p.max_instants = static_cast<int>(r.integer("max_instants", {1, 256}, p.max_instants));
 }
 
 void read(MapReader& r, LatencyParams& p) {
@@ -45,10 +45,10 @@ void read(MapReader& r, BacklashParams& p) {
 
 void read(MapReader& r, WheelSlipParams& p) {
   p.per_m = r.number("per_m", {0.0, 100.0}, p.per_m);
-  p.least_m = r.number("least_m", {0.0, 10.0}, p.least_m);
-  p.most_m = r.number("most_m", {p.least_m, 10.0}, p.most_m);
-  p.least_loss = r.number("least_loss", {0.0, 1.0}, p.least_loss);
-  p.most_loss = r.number("most_loss", {p.least_loss, 1.0}, p.most_loss);
+  p.min_m = r.number("min_m", {0.0, 10.0}, p.min_m);
+  p.max_m = r.number("max_m", {p.min_m, 10.0}, p.max_m);
+  p.min_loss = r.number("min_loss", {0.0, 1.0}, p.min_loss);
+  p.max_loss = r.number("max_loss", {p.min_loss, 1.0}, p.max_loss);
   p.skew_per_m = degrees(r, "skew_deg_per_m", {0.0, 90.0}, p.skew_per_m);
   p.diameter = r.number("diameter", {0.0, 0.2}, p.diameter);
   p.base = r.number("base", {0.0, 0.2}, p.base);
@@ -82,7 +82,7 @@ void read(MapReader& r, ClutterParams& p) {
 void read(MapReader& r, KidnappingParams& p) {
   p.earliest_s = r.number("earliest_s", {0.0, 1e5}, p.earliest_s);
   p.latest_s = r.number("latest_s", {p.earliest_s, 1e5}, p.latest_s);
-  p.least_m = r.number("least_m", {0.0, 100.0}, p.least_m);
+  p.min_m = r.number("min_m", {0.0, 100.0}, p.min_m);
 }
 
 /// off, realistic, or a map.

@@ -25,13 +25,13 @@ void read_perception(MapReader& look, LookParams& params) {
   read_rules(fuzzy, "choice", params.rules.choice);
   planner::PerceptionParams& plan = params.perception;
   plan.reject = fuzzy.number("reject", {0.0, 1.0}, plan.reject);
-  plan.least_value = fuzzy.number("least_value", {0.0, 1.0}, plan.least_value);
+  plan.min_value = fuzzy.number("min_value", {0.0, 1.0}, plan.min_value);
   plan.both_uncertain_m = fuzzy.number("both_uncertain_m", {0.0, 100.0}, plan.both_uncertain_m);
   plan.zoom_cost_per_s = fuzzy.number("zoom_cost_per_s", {0.0, 100.0}, plan.zoom_cost_per_s);
-  plan.least_radius_px = fuzzy.number("least_radius_px", {1.0, 1000.0}, plan.least_radius_px);
-  plan.most_radius_px =
-      fuzzy.number("most_radius_px", {plan.least_radius_px, 1000.0}, plan.most_radius_px);
-  plan.least_feature_px = fuzzy.number("least_feature_px", {1.0, 100.0}, plan.least_feature_px);
+  plan.min_radius_px = fuzzy.number("min_radius_px", {1.0, 1000.0}, plan.min_radius_px);
+  plan.max_radius_px =
+      fuzzy.number("max_radius_px", {plan.min_radius_px, 1000.0}, plan.max_radius_px);
+  plan.min_feature_px = fuzzy.number("min_feature_px", {1.0, 100.0}, plan.min_feature_px);
   fuzzy.finish();
   // A rule base that is wrong is reported when the mission is read, not when it is driven.
   const planner::FuzzySupervisors readable(params.rules);
