@@ -54,6 +54,15 @@ NodePtr make_list(const double* values, Eigen::Index count, const SourceLocation
   return node;
 }
 
+NodePtr make_text_list(const std::vector<std::string>& texts, const SourceLocation& where) {
+  auto node = std::make_shared<ConfigNode>();
+  node->kind = ConfigNode::Kind::list;
+  node->where = where;
+  for (const std::string& text : texts)
+    node->items.push_back(make_scalar(text, where, !is_plain_text(text)));
+  return node;
+}
+
 /// The text of a plain number without the leading plus that std::from_chars does not know.
 std::string_view digits_of(const ConfigNode& node) {
   std::string_view text = node.scalar;
@@ -332,6 +341,26 @@ std::vector<std::string> MapReader::texts(const std::string& key) {
   for (std::size_t i = 0; i < value.items.size(); ++i)
     texts.push_back(read_text(*value.items[i], path(key) + "[" + std::to_string(i) + "]"));
   return texts;
+}
+
+std::vector<std::string> MapReader::names(const std::string& key,
+                                          const std::vector<std::string>& known,
+                                          const std::vector<std::string>& fallback) {
+  const ConfigNode* value = ask(key);
+  if (value == nullptr) {
+    resolve(key, make_text_list(fallback, where()));
+    return fallback;
+  }
+  if (value->kind != ConfigNode::Kind::list || value->items.empty())
+    ValueError(path(key)).fail(*value, "must be a list of one or more of " + joined(known));
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < value->items.size(); ++i) {
+    const std::string at = path(key) + "[" + std::to_string(i) + "]";
+    names.push_back(known[read_choice(*value->items[i], at, known)]);
+    if (std::find(names.begin(), names.end() - 1, names.back()) != names.end() - 1)
+      ValueError(at).fail(*value->items[i], "which stands in the list before");
+  }
+  return names;
 }
 
 MapReader MapReader::map(const std::string& key) {

@@ -63,6 +63,9 @@ class FieldSays {
     return {"points [x, y]" + least, write_bounds(f.bounds), ""};
   }
   Said operator()(const TextsField&) const { return {"list of texts", "", ""}; }
+  Said operator()(const NamesField& f) const {
+    return {"list of", joined(f.known), "[" + joined(f.names) + "]"};
+  }
 };
 
 bool ends_with(const std::string& text, const std::string& ending) {
@@ -109,8 +112,10 @@ void KeyReference::add(const char* key, std::string kind, std::string range, std
   row.unit = about.unit.empty() ? unit_of_key(key) : about.unit;
   row.range = std::move(range);
   row.required = about.must_be_given && !optional_;
-  const bool none = about.must_be_given || optional_;
-  row.usual = !about.default_words.empty() ? about.default_words : none ? "" : std::move(usual);
+  if (!about.default_words.empty())
+    row.usual = about.default_words;
+  else if (!about.must_be_given && !optional_)
+    row.usual = from_elsewhere_.empty() ? std::move(usual) : from_elsewhere_;
   row.where = where_;
   row.meaning = about.meaning;
   rows_.push_back(std::move(row));
@@ -146,7 +151,10 @@ void KeyReference::where(bool, const std::string& words, const Describe& describ
 
 void KeyReference::map(const char* key, const About& about, const Describe& describe_map) {
   add(key, "map", "", "", about);
+  const std::string before = from_elsewhere_;
+  if (!about.default_words.empty()) from_elsewhere_ = about.default_words;
   below(key, describe_map);
+  from_elsewhere_ = before;
 }
 
 void KeyReference::map_or_file(const char* key, const About& about, const Describe& describe_map) {

@@ -57,6 +57,7 @@ class FieldReader {
     f.points = map_.points2(key_, f.bounds.range(), f.min_count);
   }
   void operator()(const TextsField& f) const { f.texts = map_.texts(key_); }
+  void operator()(const NamesField& f) const { f.names = map_.names(key_, f.known, f.names); }
 
  private:
   MapReader& map_;
@@ -99,7 +100,7 @@ void ParamVisitor::name(const char* key, std::string& value, const std::vector<s
 }
 
 bool ParamReader::given(const char* key, const Describe& describe_keys) {
-  if (!maps_.back().has(key)) return false;
+  if (!here().has(key)) return false;
   describe_keys();
   return true;
 }
@@ -110,37 +111,36 @@ void ParamReader::where(bool holds, const std::string&, const Describe& describe
 
 void ParamReader::field(const char* key, const Field& field, const About& about) {
   Field copy = field;
-  std::visit(FieldReader(maps_.back(), key, about.must_be_given), copy);
+  std::visit(FieldReader(here(), key, about.must_be_given), copy);
 }
 
-void ParamReader::below(const MapReader& map, const Describe& describe_map) {
-  maps_.push_back(map);
+void ParamReader::below(MapReader map, const Describe& describe_map) {
+  maps_.push_back(&map);
   describe_map();
-  maps_.back().finish();
+  map.finish();
   maps_.pop_back();
 }
 
 void ParamReader::map(const char* key, const About&, const Describe& describe_map) {
-  below(maps_.back().map(key), describe_map);
+  below(here().map(key), describe_map);
 }
 
 void ParamReader::map_or_file(const char* key, const About&, const Describe& describe_map) {
-  below(maps_.back().map_or_file(key), describe_map);
+  below(here().map_or_file(key), describe_map);
 }
 
 void ParamReader::each(const char* key, const About&, const Describe& describe_item) {
-  for (const MapReader& item : maps_.back().maps(key)) below(item, describe_item);
+  for (MapReader& item : here().maps(key)) below(std::move(item), describe_item);
 }
 
 bool ParamReader::toggle_map(const char* key, bool on, const About&, const Describe& describe_map) {
-  if (!maps_.back().holds_map(key))
-    return maps_.back().choice(key, {"off", "realistic"}, on ? 1 : 0) == 1;
-  below(maps_.back().map(key), describe_map);
+  if (!here().holds_map(key)) return here().choice(key, {"off", "realistic"}, on ? 1 : 0) == 1;
+  below(here().map(key), describe_map);
   return true;
 }
 
 void ParamReader::require(bool holds, const char* key, const std::string& message) {
-  if (!holds) throw maps_.back().error(key, message);
+  if (!holds) throw here().error(key, message);
 }
 
 double written_degrees(double radians) {

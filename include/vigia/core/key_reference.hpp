@@ -36,7 +36,7 @@ class KeyReference : public ParamVisitor {
   void map_or_file(const char* key, const About& about, const Describe& describe_map) override;
   void each(const char* key, const About& about, const Describe& describe_item) override;
   void require(bool, const char*, const std::string&) override {}
-  const MapReader* reader() const override { return nullptr; }
+  MapReader* reader() const override { return nullptr; }
 
  protected:
   void field(const char* key, const Field& field, const About& about) override;
@@ -50,7 +50,8 @@ class KeyReference : public ParamVisitor {
 
   std::string prefix_;
   std::string where_;
-  bool optional_ = false;  ///< the keys are visited though they may be left out
+  std::string from_elsewhere_;  ///< where the defaults of a map come from, in words
+  bool optional_ = false;       ///< the keys are visited though they may be left out
   std::vector<KeyRow> rows_;
 };
 

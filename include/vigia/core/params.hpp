@@ -97,9 +97,14 @@ struct PointsField {
 struct TextsField {
   std::vector<std::string>& texts;
 };
+/// A list of some of the known names, at least one and each once.
+struct NamesField {
+  std::vector<std::string>& names;
+  const std::vector<std::string>& known;
+};
 using Field =
     std::variant<NumberField, AngleField, IntegerField, BooleanField, TextField, FolderField,
-                 TextOrFileField, ChoiceField, VectorField, PointsField, TextsField>;
+                 TextOrFileField, ChoiceField, VectorField, PointsField, TextsField, NamesField>;
 
 /// Visits the keys of a map in a file and the fields of the struct that takes them. A struct of
 /// parameters is described once, by a function beside it,
@@ -165,6 +170,10 @@ class ParamVisitor {
   void texts(const char* key, std::vector<std::string>& value, const About& about) {
     field(key, TextsField{value}, about);
   }
+  void names(const char* key, std::vector<std::string>& value,
+             const std::vector<std::string>& known, const About& about) {
+    field(key, NamesField{value, known}, about);
+  }
 
   /// Keys that stand in the map only when they are given: @p describe_keys is called then, and
   /// visits @p key among others. Says whether it was.
@@ -197,7 +206,7 @@ class ParamVisitor {
   /// Rejects the value of @p key with @p message unless @p holds.
   virtual void require(bool holds, const char* key, const std::string& message) = 0;
   /// The map that is read, for checks that want places in the file; null when none is.
-  virtual const MapReader* reader() const = 0;
+  virtual MapReader* reader() const = 0;
 
  protected:
   virtual void field(const char* key, const Field& field, const About& about) = 0;
@@ -206,10 +215,11 @@ class ParamVisitor {
                           const Describe& describe_map) = 0;
 };
 
-/// Reads the keys of a map strictly (see MapReader) into the fields that are visited.
+/// Reads the keys of a map strictly (see MapReader) into the fields that are visited. The reader
+/// that it is given stays the caller's to finish.
 class ParamReader : public ParamVisitor {
  public:
-  explicit ParamReader(const MapReader& reader) : maps_{reader} {}
+  explicit ParamReader(MapReader& reader) : maps_{&reader} {}
 
   bool given(const char* key, const Describe& describe_keys) override;
   void where(bool holds, const std::string& words, const Describe& describe_keys) override;
@@ -217,9 +227,7 @@ class ParamReader : public ParamVisitor {
   void map_or_file(const char* key, const About& about, const Describe& describe_map) override;
   void each(const char* key, const About& about, const Describe& describe_item) override;
   void require(bool holds, const char* key, const std::string& message) override;
-  const MapReader* reader() const override { return &maps_.back(); }
-  /// Rejects the keys that nobody asked for.
-  void finish() const { maps_.front().finish(); }
+  MapReader* reader() const override { return maps_.back(); }
 
  protected:
   void field(const char* key, const Field& field, const About& about) override;
@@ -227,17 +235,18 @@ class ParamReader : public ParamVisitor {
                   const Describe& describe_map) override;
 
  private:
-  void below(const MapReader& map, const Describe& describe_map);
+  MapReader& here() { return *maps_.back(); }
+  void below(MapReader map, const Describe& describe_map);
 
-  std::vector<MapReader> maps_;  ///< from the top down to the one that is read
+  std::vector<MapReader*> maps_;  ///< from the top down to the one that is read
 };
 
 /// Reads all keys of a map into @p params. Throws InputError.
 template <typename Params>
-void read_params(const MapReader& reader, Params& params) {
+void read_params(MapReader reader, Params& params) {
   ParamReader visitor(reader);
   describe(visitor, params);
-  visitor.finish();
+  reader.finish();
 }
 
 /// Degrees as somebody would have written the angle: the shortest figure that gives it.

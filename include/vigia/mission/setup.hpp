@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "vigia/core/belief.hpp"
+#include "vigia/core/key_reference.hpp"
 #include "vigia/core/world_map.hpp"
 #include "vigia/localization/ekf.hpp"
 #include "vigia/pilot/pilot_params.hpp"
@@ -56,10 +57,10 @@ struct MissionSetup {
   sim::RobotSetup robot;
   sim::DisturbanceParams disturbances;  ///< of the world, which nobody but the simulator knows
 
-  Pose2 start;                 ///< true start
-  Prior prior;                 ///< what the localizers are told of it
-  double start_sigma_m = 0.0;  ///< the true start is drawn round `start` with these
-  double start_sigma_rad = 0.0;
+  Pose2 start;                  ///< true start
+  Prior prior;                  ///< what the localizers are told of it
+  double start_sigma_m = 0.01;  ///< the true start is drawn round `start` with these
+  double start_sigma_rad = from_deg(0.2);
 
   std::vector<Eigen::Vector2d> waypoints;  ///< start, vias, goal
   planner::RouteParams route;
@@ -83,6 +84,9 @@ struct MissionSetup {
   Path path;                  ///< planned, the same for every seed
   std::string resolved_yaml;  ///< the whole mission with every default written out
 };
+
+/// The reference of a mission's keys, with those of its world and robot.
+std::vector<KeyRow> mission_keys();
 
 /// Reads and validates a mission file with command-line overrides ("key.path=value"), and plans its
 /// route. Throws InputError: anything wrong in the files, a start in an obstacle, no route, ….
