@@ -109,6 +109,10 @@ void describe_zoom(ParamVisitor& v, const Sensor& sensor, RobotSetup& setup) {
 
 }  // namespace
 
+Rig RobotSetup::rig() const {
+  return head_rig(robot.head, zoom);
+}
+
 RobotParams usual_robot() {
   RobotParams robot;
   robot.base.turn_rate = from_deg(45.0);

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "vigia/core/error.hpp"
+#include "vigia/core/key_reference.hpp"
 #include "vigia/core/suggestion.hpp"
 #include "vigia/evaluation/campaign.hpp"
 #include "vigia/evaluation/text_table.hpp"

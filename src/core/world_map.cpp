@@ -3,6 +3,8 @@
 #include "read_landmark.hpp"
 #include "world_checks.hpp"
 
+#include "vigia/core/params.hpp"
+
 namespace vigia {
 namespace {
 

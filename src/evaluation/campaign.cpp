@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "vigia/core/params.hpp"
+#include "vigia/core/key_reference.hpp"
 
 namespace vigia::evaluation {
 namespace {

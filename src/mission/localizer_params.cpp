@@ -16,9 +16,9 @@ localization::LandmarkInformation landmark_information(const MissionSetup& setup
   localization::PointsInformationParams points;
   points.sensor = setup.ekf.sensor;
   points.fill = setup.look.fill;
-  return {localization::DiscInformation(head, setup.robot.zoom,
-                                        {setup.ekf.sensor, setup.look.radius_px}),
-          localization::PointsInformation(head, setup.robot.zoom, points)};
+  return {localization::DiscInformation(
+              head, setup.robot.zoom, {setup.ekf.sensor, setup.look.radius_px}, setup.world.ground),
+          localization::PointsInformation(head, setup.robot.zoom, points, setup.world.ground)};
 }
 
 localization::RelocalizerParams relocalizer_params(const MissionSetup& setup) {

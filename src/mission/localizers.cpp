@@ -25,7 +25,7 @@ bool has_patterns(const MissionSetup& setup) {
 }
 
 LocalizerPtr make_ekf(const MissionSetup& setup) {
-  return std::make_unique<localization::EkfLocalizer>(setup.world.landmarks, setup.robot.robot.head,
+  return std::make_unique<localization::EkfLocalizer>(setup.world.landmarks, setup.on_ground(),
                                                       setup.ekf, setup.world.plan);
 }
 
@@ -35,7 +35,7 @@ LocalizerPtr make_odometry(const MissionSetup& setup) {
 
 LocalizerPtr make_pattern_fix(const MissionSetup& setup) {
   return std::make_unique<localization::PatternFixLocalizer>(
-      setup.world.landmarks, setup.robot.robot.head, pattern_fix_params(setup));
+      setup.world.landmarks, setup.on_ground(), pattern_fix_params(setup));
 }
 
 }  // namespace

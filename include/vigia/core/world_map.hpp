@@ -2,16 +2,20 @@
 
 #include <string>
 
+#include "vigia/core/config.hpp"
 #include "vigia/core/floor_plan.hpp"
+#include "vigia/core/ground.hpp"
 #include "vigia/core/landmark.hpp"
-#include "vigia/core/params.hpp"
 
 namespace vigia {
 
-/// What the robot knows of the building: plan and landmarks.
+class ParamVisitor;
+
+/// What the robot knows of the building: plan, ground and landmarks.
 struct WorldMap {
   std::string name = "world";
   FloorPlan plan;
+  Ground ground;
   LandmarkMap landmarks;
 };
 

@@ -5,8 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "vigia/core/key_reference.hpp"
 #include "vigia/mission/setup.hpp"
+
+namespace vigia {
+struct KeyRow;
+}
 
 namespace vigia::evaluation {
 

@@ -86,9 +86,8 @@ struct PointsMeasurement {
 
 /// Compresses the points of a landmark at wMl. Nothing when one of them has no image from there.
 std::optional<PointsMeasurement> measure_points(const std::vector<SeenPoint>& points,
-                                                const Eigen::Isometry3d& wMl,
-                                                const SensorSnapshot& sensor,
-                                                const HeadGeometry& geometry, const Pose2& pose,
+                                                const Eigen::Isometry3d& wMl, const Shot& shot,
+                                                const RigOnGround& on_ground, const Pose2& pose,
                                                 const LookBias& bias);
 
 }  // namespace vigia::localization

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "vigia/core/belief.hpp"
-#include "vigia/core/key_reference.hpp"
 #include "vigia/core/world_map.hpp"
 #include "vigia/localization/ekf.hpp"
 #include "vigia/pilot/pilot_params.hpp"
@@ -18,6 +17,10 @@
 #include "vigia/planner/visibility.hpp"
 #include "vigia/servo/gaze_controller.hpp"
 #include "vigia/sim/simulator.hpp"
+
+namespace vigia {
+struct KeyRow;
+}
 
 namespace vigia::mission {
 
@@ -83,6 +86,9 @@ struct MissionSetup {
 
   Path path;                  ///< planned, the same for every seed
   std::string resolved_yaml;  ///< the whole mission with every default written out
+
+  /// What places the robot's cameras in the world, as the robot knows it.
+  RigOnGround on_ground() const { return {robot.rig(), world.ground}; }
 };
 
 /// The reference of a mission's keys, with those of its world and robot.

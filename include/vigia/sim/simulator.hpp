@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "vigia/core/rig.hpp"
 #include "vigia/sim/camera_errors.hpp"
 #include "vigia/sim/disturbances.hpp"
 #include "vigia/sim/kidnapping.hpp"
@@ -25,6 +26,9 @@ struct RobotSetup {
   ImagingParams imaging;
   double initial_zoom_mm = 8.0;
   std::optional<RangeRingParams> range_ring;
+
+  /// The robot's cameras: one on the head, with the zoom, of id 0.
+  Rig rig() const;
 };
 
 /// Reads a robot file; the reader stays the caller's to finish. Throws InputError with the place of
