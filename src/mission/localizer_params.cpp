@@ -2,9 +2,6 @@
 
 #include <algorithm>
 
-#include "vigia/localization/ekf.hpp"
-#include "vigia/localization/odometry_localizer.hpp"
-
 namespace vigia::mission {
 
 localization::PatternFixParams pattern_fix_params(const MissionSetup& setup) {
@@ -20,17 +17,6 @@ localization::LandmarkInformation landmark_information(const MissionSetup& setup
   params.radius_px = setup.look.radius_px;
   params.fill = setup.look.fill;
   return {setup.robot.robot.head, setup.robot.zoom, params, setup.world.ground};
-}
-
-std::unique_ptr<localization::Localizer> make_localizer(const std::string& name,
-                                                        const MissionSetup& setup) {
-  if (name == "odometry")
-    return std::make_unique<localization::OdometryLocalizer>(setup.ekf.odometry);
-  if (name == "pattern_fix")
-    return std::make_unique<localization::PatternFixLocalizer>(
-        setup.world.landmarks, setup.on_ground(), pattern_fix_params(setup));
-  return std::make_unique<localization::EkfLocalizer>(setup.world.landmarks, setup.on_ground(),
-                                                      setup.ekf, setup.world.plan);
 }
 
 localization::RelocalizerParams relocalizer_params(const MissionSetup& setup) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vigia/mission/localizers.hpp"
+
 namespace vigia::mission {
 namespace {
 
@@ -49,7 +51,7 @@ Loop::Loop(const MissionSetup& setup, std::uint64_t seed, const std::vector<List
       dt_(Duration::from_seconds(setup.tick_s)) {
   for (const auto& name : setup.localizers) {
     if (name == setup.primary) primary_ = localizers_.size();
-    localizers_.push_back(make_localizer(name, setup));
+    localizers_.push_back(find_name(localizers(), name)->make(setup));
     localizers_.back()->reset(now_, setup.prior);
   }
   localizer_ticks_.resize(localizers_.size());
