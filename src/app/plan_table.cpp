@@ -16,7 +16,7 @@ namespace {
 
 localization::LandmarkInformationParams information_params(const mission::MissionSetup& setup) {
   localization::LandmarkInformationParams params;
-  params.sensor = setup.ekf.sensor;
+  params.sensor = setup.noise.sensor;
   params.radius_px = setup.look.radius_px;
   params.fill = setup.look.fill;
   return params;
@@ -48,7 +48,7 @@ class PolicyAtPositions {
     const std::vector<LandmarkId> excluded;
     const auto choice = policy_->choose({Stamp{}, belief, head, position.station_m, setup_.path,
                                          setup_.world.landmarks, visibility_, information_,
-                                         excluded, head_, 0.0, false, setup_.ekf.odometry});
+                                         excluded, head_, 0.0, false, setup_.noise.odometry});
     return choice ? std::optional(choice->landmark) : std::nullopt;
   }
 

@@ -1,5 +1,7 @@
 #include "true_association.hpp"
 
+#include <cmath>
+
 #include "vigia/core/overloaded.hpp"
 
 namespace vigia::evaluation {
@@ -8,15 +10,20 @@ namespace {
 const Landmark* nearest_disc(const EllipseObservation& seen, const LandmarkMap& map,
                              const RigOnGround& on_ground, const Pose2& truth,
                              const localization::LookBias& bias) {
+  const Shot& shot = seen.shot;
+  const HeadAngles head{shot.head.pan + bias.pan, shot.head.tilt + bias.tilt};
+  const Eigen::Isometry3d cMw = on_ground.wMc(shot.camera, head, truth).inverse();
+  Intrinsics camera = pinhole(shot);
+  camera.px *= std::exp(bias.log_focal);
+  camera.py *= std::exp(bias.log_focal);
+  const Eigen::Vector2d uv(seen.ellipse.u, seen.ellipse.v);
   const Landmark* nearest = nullptr;
   double min_px = seen.ellipse.a;
   for (const Landmark& landmark : map.all()) {
-    const auto image = localization::predict_disc(landmark, seen.shot, on_ground, truth, bias);
-    if (!image) continue;
-    const double off_px =
-        (image->z.head<2>() - Eigen::Vector2d(seen.ellipse.u, seen.ellipse.v)).norm();
-    if (off_px >= min_px) continue;
-    min_px = off_px;
+    if (!std::holds_alternative<DiscShape>(landmark.shape)) continue;
+    const auto image = project(camera, cMw * landmark.centre_w());
+    if (!image || (*image - uv).norm() >= min_px) continue;
+    min_px = (*image - uv).norm();
     nearest = &landmark;
   }
   return nearest;

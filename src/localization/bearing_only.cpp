@@ -404,7 +404,7 @@ std::optional<BearingOnlyLocalizer::Candidate> BearingOnlyLocalizer::explain(
 /// Every pose from which three landmarks lie on the directions of three looks.
 std::vector<Pose2> BearingOnlyLocalizer::seeds() const {
   std::vector<Pose2> poses;
-  std::size_t tries = 0;
+  int tries = 0;
   const auto bearing = [this](std::size_t i) { return remembered_[i].bearing; };
   for (const Triple& triple : spread_triples(remembered_.size(), bearing)) {
     std::array<Bearing, 3> lines;
