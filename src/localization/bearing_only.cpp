@@ -10,6 +10,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "vigia/core/overloaded.hpp"
 #include "vigia/core/plane_geometry.hpp"
 #include "vigia/localization/chi_square.hpp"
 
@@ -78,6 +79,14 @@ std::vector<Pose2> resect(const std::array<Bearing, 3>& bearings) {
     poses.push_back({p.x(), p.y(), theta});
   }
   return poses;
+}
+
+/// The landmark of those that say who they are.
+std::optional<LandmarkId> named_landmark(const Observation& observation) {
+  return std::visit(
+      Overloaded{[](const EllipseObservation&) { return std::optional<LandmarkId>(); },
+                 [](const PointsObservation& seen) { return std::optional(seen.landmark); }},
+      observation);
 }
 
 bool same_pose(const Pose2& a, const Pose2& b) {
@@ -199,8 +208,7 @@ std::optional<BearingOnlyLocalizer::Sightline> BearingOnlyLocalizer::sightline(
   const Eigen::Vector3d ray_r = rMc.linear() * *ray_c;
   Sightline seen;
   seen.look = shot.look;
-  if (const auto* named = std::get_if<PointsObservation>(&observation))
-    seen.landmark = named->landmark;
+  seen.landmark = named_landmark(observation);
   seen.eye_r = rMc.translation().head<2>();
   seen.height_m = rMc.translation().z();
   seen.bearing = std::atan2(ray_r.y(), ray_r.x());
@@ -239,8 +247,8 @@ LookState BearingOnlyLocalizer::look_state(const Shot& shot) const {
   Pose2 pose = Pose2::from_vector(mean_.head<3>());
   for (auto u = history_.rbegin(); u != history_.rend() && u->to > shot.stamp; ++u)
     pose = compose(pose, inverse(step_of(*u)));
-  LookState state =
-      begin_look(initial_state(shot.stamp, {}, params_.sensor), shot.look, params_.sensor);
+  LookState state = localization::begin_look(initial_state(shot.stamp, {}, params_.sensor),
+                                             shot.look, params_.sensor);
   state.mean.head<4>() << pose.vector(), mean_(3);
   state.covariance.topLeftCorner<4, 4>() = covariance_;
   return state;
