@@ -2,11 +2,11 @@
 
 #include <Eigen/Core>
 
-#include "vigia/core/rig.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/core/observation.hpp"
 #include "vigia/core/odometry.hpp"
 #include "vigia/core/pose.hpp"
+#include "vigia/core/rig.hpp"
 #include "vigia/core/sensor_noise.hpp"
 #include "vigia/localization/measurement_model.hpp"
 
