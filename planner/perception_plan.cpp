@@ -105,9 +105,9 @@ bool within_margin(const Landmark& landmark, const LandmarkStudy& study, const Z
   const double focal = head.zoom.at(zoom_mm).px;
   const double largest = focal * of.radius_m / study.nearest_m;
   if (const auto feature = feature_width(landmark, study.farthest_m, study.most_oblique, focal))
-    return *feature >= params.least_feature_px && largest <= wanted_radius(landmark, head);
-  return focal * of.radius_m / study.farthest_m >= params.least_radius_px &&
-         largest <= params.most_radius_px;
+    return *feature >= params.min_feature_px && largest <= wanted_radius(landmark, head);
+  return focal * of.radius_m / study.farthest_m >= params.min_radius_px &&
+         largest <= params.max_radius_px;
 }
 
 void preselect(AreaPlan& plan, const LandmarkMap& landmarks, const ZoomClasses& classes,

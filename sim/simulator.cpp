@@ -105,7 +105,7 @@ std::vector<Exposure::Instant> Simulator::instants(const Intrinsics& intrinsics)
         intrinsics);
     if (moved > kStill_px)
       count =
-          static_cast<int>(std::min<double>(motion_blur_->most_instants, 1.0 + std::ceil(moved)));
+          static_cast<int>(std::min<double>(motion_blur_->max_instants, 1.0 + std::ceil(moved)));
   }
   if (count == 1) return {{robot_.camera_pose(), people}};
   std::vector<Exposure::Instant> instants;

@@ -1,6 +1,5 @@
 #include "loop.hpp"
 
-#include "localizer_params.hpp"
 #include "robot_parts.hpp"
 #include "stopwatch.hpp"
 
@@ -11,6 +10,7 @@
 #include <utility>
 
 #include "vigia/imaging/image_frame.hpp"
+#include "vigia/mission/localizers.hpp"
 
 namespace vigia::mission {
 namespace {
@@ -63,7 +63,7 @@ Loop::Loop(const MissionSetup& setup, std::uint64_t seed, const std::vector<List
   EstimatorTick& estimator = tick_.estimator;
   for (const auto& name : setup.localizers) {
     if (name == setup.primary) estimator.primary = localizers_.size();
-    localizers_.push_back(make_localizer(name, setup));
+    localizers_.push_back(find_name(localizers(), name)->make(setup));
     localizers_.back()->reset(estimator.now, setup.prior);
   }
   attention_->follow(navigator_.path());

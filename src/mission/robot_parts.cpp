@@ -23,10 +23,10 @@ std::vector<CameraFeed> make_feeds(const MissionSetup& setup, const Rig& rig, Du
   std::vector<CameraFeed> feeds;
   for (auto camera = rig.cameras.begin(); camera != rig.cameras.end(); ++camera) {
     const bool directed = camera == directed_camera(rig);
-    feeds.emplace_back(
-        *camera, delay,
-        perception::make_eye("landmark", {setup.world.landmarks, setup.on_ground(),
-                                          setup.ekf.sensor, setup.tracker, directed}));
+    feeds.emplace_back(*camera, delay,
+                       find_name(perception::eyes(), "landmark")
+                           ->make({setup.world.landmarks, setup.on_ground(), setup.noise.sensor,
+                                   setup.tracker, directed}));
   }
   return feeds;
 }

@@ -56,7 +56,8 @@ SweepRecovery::SweepRecovery(const MissionSetup& setup, perception::Eye& eye, Ev
       log_(log),
       relocalizer_(setup.world.landmarks, setup.world.plan, setup.on_ground(),
                    relocalizer_params(setup)),
-      look_around_(setup) {}
+      look_around_(setup),
+      knew_(setup.prior.has_value()) {}
 
 RecoveryStep SweepRecovery::begin(const Readings& readings) {
   RecoveryStep step;
@@ -124,6 +125,7 @@ void SweepRecovery::finish_sweep(const RecoveryInput& input, RecoveryStep& step)
   step.pose = relocalize(input.belief);
   if (step.pose) {
     step.status = RecoveryStatus::found;
+    knew_ = true;
     look_around_.found();
     return;
   }
@@ -143,6 +145,7 @@ std::optional<Prior> SweepRecovery::relocalize(const Belief& belief) {
                {"hypotheses", static_cast<double>(found.hypotheses.size())}});
   if (const auto here = std::exchange(by_code_, std::nullopt)) return here;
   if (const auto here = best_of(found)) return here;
+  if (!knew_) return std::nullopt;
   // The alarm may have been a false one: what was believed helps where too little is seen.
   return best_of(relocalizer_.solve(sweep, inflated_prior(belief)));
 }

@@ -49,6 +49,7 @@ class SweepRecovery : public Recovery {
   std::optional<Prior> by_code_;  ///< what a pattern of the sweep said
   std::optional<Exploration> exploration_;
   HeadRates head_;  ///< asked for last
+  bool knew_;       ///< where it was, some time before it was lost
 };
 
 }  // namespace vigia::mission

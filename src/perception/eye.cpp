@@ -5,31 +5,19 @@
 namespace vigia::perception {
 namespace {
 
-struct Entry {
-  const char* name;
-  std::unique_ptr<Eye> (*make)(const EyeParts&);
-};
-
-const std::vector<Entry>& table() {
-  static const std::vector<Entry> entries{
-      {"landmark", [](const EyeParts& parts) -> std::unique_ptr<Eye> {
-         return std::make_unique<LandmarkEye>(parts);
-       }}};
-  return entries;
+template <typename T>
+std::unique_ptr<Eye> make(const EyeParts& parts) {
+  return std::make_unique<T>(parts);
 }
 
 }  // namespace
 
-std::unique_ptr<Eye> make_eye(const std::string& name, const EyeParts& parts) {
-  for (const Entry& entry : table())
-    if (name == entry.name) return entry.make(parts);
-  return nullptr;
-}
-
-std::vector<std::string> eye_names() {
-  std::vector<std::string> names;
-  for (const Entry& entry : table()) names.emplace_back(entry.name);
-  return names;
+const std::vector<EyeEntry>& eyes() {
+  static const std::vector<EyeEntry> entries{
+      {{"landmark", "observes the map's discs, colour patterns and tags, directed or all of them",
+        "a perspective camera; patterns need colour"},
+       make<LandmarkEye>}};
+  return entries;
 }
 
 }  // namespace vigia::perception

@@ -29,9 +29,9 @@ class LandmarkEyeTest : public ::testing::Test {
   }
 
   std::unique_ptr<Eye> eye(bool directed) const {
-    EyeParts parts{setup_.world.landmarks, setup_.on_ground(), setup_.ekf.sensor};
+    EyeParts parts{setup_.world.landmarks, setup_.on_ground(), setup_.noise.sensor};
     parts.directed = directed;
-    return make_eye("landmark", parts);
+    return find_name(eyes(), "landmark")->make(parts);
   }
   std::vector<Observation> observe(Eye& eye, const std::optional<GazeRequest>& request) const {
     return eye.observe({*frame_, shot_}, belief_, request);
@@ -103,11 +103,10 @@ TEST_F(LandmarkEyeTest, WritesACellForEachOfItsColumns) {
   }
 }
 
-TEST(Eyes, AreMadeByNameAndAnUnknownNameGivesNone) {
+TEST(Eyes, AreFoundByTheirNames) {
+  EXPECT_THAT(names_of(eyes()), ElementsAre("landmark"));
   const LandmarkMap none;
-  EXPECT_THAT(eye_names(), ElementsAre("landmark"));
-  EXPECT_NE(make_eye("landmark", {none}), nullptr);
-  EXPECT_EQ(make_eye("third", {none}), nullptr);
+  for (const EyeEntry& entry : eyes()) EXPECT_EQ(entry.make({none})->name(), entry.name);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "vigia/core/belief.hpp"
 #include "vigia/core/gaze.hpp"
 #include "vigia/core/landmark.hpp"
+#include "vigia/core/name_table.hpp"
 #include "vigia/core/observation.hpp"
 #include "vigia/core/rig.hpp"
 #include "vigia/core/sensor_noise.hpp"
@@ -59,11 +60,11 @@ struct EyeParts {
   bool directed = false;
 };
 
-/// "landmark" (discs, patterns and tags of the map, by a perspective camera). Null for another
-/// name.
-std::unique_ptr<Eye> make_eye(const std::string& name, const EyeParts& parts);
+struct EyeEntry : NameEntry {
+  std::unique_ptr<Eye> (*make)(const EyeParts& parts);
+};
 
-/// The names that make_eye knows.
-std::vector<std::string> eye_names();
+/// Every eye.
+const std::vector<EyeEntry>& eyes();
 
 }  // namespace vigia::perception

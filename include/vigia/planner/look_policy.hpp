@@ -10,6 +10,7 @@
 #include "vigia/core/belief.hpp"
 #include "vigia/core/information.hpp"
 #include "vigia/core/landmark.hpp"
+#include "vigia/core/name_table.hpp"
 #include "vigia/core/odometry.hpp"
 #include "vigia/core/path.hpp"
 #include "vigia/core/random.hpp"
@@ -69,13 +70,15 @@ struct LookPolicyParts {
   PerceptionParams perception = {};
 };
 
-/// "fixed", "random" (visible ones), "nearest" (visible), "greedy" (least expected trace of the
-/// position's covariance after the look), "fuzzy" (the perception plan of Armingol et al.) or
-/// "pattern" (QUIXOTE's three criteria). Null for another name.
-std::unique_ptr<LookPolicy> make_look_policy(const std::string& name, const LookPolicyParts& parts);
+struct LookPolicyEntry : NameEntry {
+  std::unique_ptr<LookPolicy> (*make)(const LookPolicyParts& parts);
+};
 
-/// The names that make_look_policy knows.
-std::vector<std::string> look_policy_names();
+/// Every policy.
+const std::vector<LookPolicyEntry>& look_policies();
+
+/// The policy of that name; null for a name that the table has not.
+std::unique_ptr<LookPolicy> make_look_policy(const std::string& name, const LookPolicyParts& parts);
 
 /// Whether a landmark is visible from @p pose and not excluded.
 bool can_be_watched(const Landmark& landmark, const LookContext& context, const Pose2& pose);

@@ -19,14 +19,14 @@ struct PerceptionParams {
   double reject = 0.25;  ///< a landmark of less suitability is rejected
   /// In motion, the best preselected landmark is taken when its value (both supervisors' product)
   /// is at least this share of the best visible one's.
-  double least_value = 0.9;
+  double min_value = 0.9;
   /// Standing, landmarks along both axes are taken in turn while both axes' σ exceed this.
   double both_uncertain_m = 0.05;
   double zoom_cost_per_s = 0.2;  ///< suitability that a second of the zoom's travel outweighs
   /// The margin that needs no optics move at the area's zoom. Discs by their radius:
-  double least_radius_px = 10.0;
-  double most_radius_px = 80.0;
-  double least_feature_px = 5.0;  ///< points by feature_width(); at most the image takes them
+  double min_radius_px = 10.0;
+  double max_radius_px = 80.0;
+  double min_feature_px = 5.0;  ///< points by feature_width(); at most the image takes them
 };
 
 /// What the plan knows of a landmark in a control area.

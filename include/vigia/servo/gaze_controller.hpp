@@ -29,7 +29,7 @@ struct GazeParams {
   double planned_least_px = 8.0;   ///< a planned zoom stays while the landmark is this large …
   double planned_most = 0.5;       ///< … and at most this part of half the image's smaller side
   /// σ of the head's angles, for the zoom at which the landmark is still inside the image.
-  double look_angle_deg = 0.3;
+  double look_angle = from_deg(0.3);
 };
 
 /// The tracker's answer to the last request, in pixels.
