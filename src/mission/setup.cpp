@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "vigia/core/key_reference.hpp"
+#include "vigia/core/noise_params.hpp"
 #include "vigia/localization/params.hpp"
 #include "vigia/mission/localizers.hpp"
 #include "vigia/pilot/params.hpp"
