@@ -5,6 +5,23 @@
 #include <vector>
 
 namespace vigia::evaluation {
+namespace {
+
+/// Of a start of which nothing is said: anywhere in the building.
+Eigen::Matrix3d covariance_of_anywhere(const FloorPlan& plan) {
+  const Eigen::Vector2d extent = plan.max_corner() - plan.min_corner();
+  const Eigen::Vector3d variances(extent.x() * extent.x() / 12.0, extent.y() * extent.y() / 12.0,
+                                  kPi * kPi / 3.0);
+  return variances.asDiagonal();
+}
+
+EstimatorSetup estimator_setup(const mission::MissionSetup& setup) {
+  return {setup.world.landmarks, setup.on_ground(), setup.robot.robot.odometry,
+          setup.robot.robot.sensor,
+          setup.prior ? setup.prior->covariance : covariance_of_anywhere(setup.world.plan)};
+}
+
+}  // namespace
 
 struct DriveScorer::Impl {
   const mission::MissionSetup* setup = nullptr;
@@ -33,10 +50,7 @@ void DriveScorer::on_start(const mission::MissionStart& start) {
   impl_->score.mission = setup.name;
   impl_->score.seed = start.seed;
   impl_->score.primary = setup.primary;
-  EstimatorSetup estimators{setup.world.landmarks, setup.on_ground(), setup.robot.robot.odometry,
-                            setup.robot.robot.sensor};
-  if (setup.prior) estimators.prior_covariance = setup.prior->covariance;
-  impl_->localizers.assign(setup.localizers.size(), EstimatorScorer(estimators));
+  impl_->localizers.assign(setup.localizers.size(), EstimatorScorer(estimator_setup(setup)));
   impl_->last_zoom_mm = setup.robot.initial_zoom_mm;
 }
 
