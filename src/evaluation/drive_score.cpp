@@ -1,6 +1,7 @@
 #include "vigia/evaluation/drive_score.hpp"
 
 #include "loss_watch.hpp"
+#include "true_association.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -22,16 +23,14 @@ int& count_of(LocalizerScore& score, localization::UpdateStatus status) {
   }
 }
 
-/// What the image taught at best.
-void bound_by(const Observation& observation, const Landmark& landmark,
+/// What the image taught at best, whatever the localizer took it for.
+void bound_by(const Observation& observation, const mission::MissionSetup& setup,
               const sim::RobotTruth& truth, PosteriorBound& bound) {
   const auto& angle = truth.look_angle_error;
   const localization::LookBias bias{angle.pan, angle.tilt, truth.look_log_focal_error};
-  const Shot& shot = shot_of(observation);
-  if (const auto* disc = std::get_if<EllipseObservation>(&observation))
-    bound.update(truth.pose, landmark, shot, bias, localization::measured_disc_covariance(*disc));
-  if (const auto* points = std::get_if<PointsObservation>(&observation))
-    bound.update(truth.pose, landmark, shot, bias, localization::seen_points(landmark, *points));
+  const Landmark* landmark =
+      true_landmark(observation, setup.world.landmarks, setup.on_ground(), truth.pose, bias);
+  if (landmark != nullptr) bound.update(truth.pose, bias, *landmark, observation);
 }
 
 }  // namespace
@@ -99,9 +98,7 @@ void DriveScorer::Impl::score_localizer(const mission::Tick& tick, std::size_t i
   sum.bound.predict(tick.true_pose_before, u, control_covariance(u, setup->robot.robot.odometry));
   const bool fused = update && update->status == localization::UpdateStatus::fused;
   if (update) ++count_of(sum.score, update->status);
-  if (fused && update->landmark)
-    bound_by(*tick.observation, *setup->world.landmarks.find(*update->landmark),
-             tick.truth_at_exposure, sum.bound);
+  if (fused) bound_by(*tick.observation, *setup, tick.truth_at_exposure, sum.bound);
   const Eigen::Vector3d error = difference(belief.pose, tick.truth.pose);
   const double squared = error.head<2>().squaredNorm();
   const double nees = evaluation::nees({tick.truth.pose, belief.pose, belief.covariance});

@@ -50,9 +50,10 @@ std::optional<LookScheduler::Decision> LookScheduler::choose(Stamp now, const Be
   for (const auto& [landmark, failure] : failures_)
     if (now <= failure.until) excluded.push_back(landmark);
 
-  const auto choice = policy_->choose(
-      {now, belief, head, going.station_m, *path_, setup_.world.landmarks, visibility_,
-       information_, excluded, head_model_, going.speed_mps, going.standing, setup_.ekf.odometry});
+  const auto choice =
+      policy_->choose({now, belief, head, going.station_m, *path_, setup_.world.landmarks,
+                       visibility_, information_, excluded, head_model_, going.speed_mps,
+                       going.standing, setup_.noise.odometry});
   if (!choice) return std::nullopt;
   GazeOrder order;
   order.look = next_look_++;

@@ -38,7 +38,7 @@ Loop::Loop(const MissionSetup& setup, std::uint64_t seed, const std::vector<List
       relocalizer_(setup.world.landmarks, setup.world.plan, setup.on_ground(),
                    relocalizer_params(setup)),
       scheduler_(setup, information_, seed),
-      watcher_(setup.tracker, setup.world.landmarks, setup.on_ground(), setup.ekf.sensor),
+      watcher_(setup.tracker, setup.world.landmarks, setup.on_ground(), setup.noise.sensor),
       gaze_(setup.robot.robot.head, setup.robot.robot.head_limits, setup.robot.zoom, setup.gaze,
             setup.world.ground),
       base_motion_({setup.robot.robot.base, setup.tick_s}),

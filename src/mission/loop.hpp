@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "vigia/localization/points_information.hpp"
+#include "vigia/localization/landmark_information.hpp"
 #include "vigia/localization/relocalizer.hpp"
 #include "vigia/mission/mission.hpp"
 #include "vigia/pilot/pilot.hpp"

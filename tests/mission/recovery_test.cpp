@@ -21,7 +21,7 @@ class RecoveryStory : public Listener {
 MissionSetup mission_with_prior_off_by(const Pose2& offset) {
   MissionSetup setup =
       load_mission(std::string(VIGIA_SOURCE_DIR) + "/config/missions/armingol-room.yaml");
-  setup.prior.pose = compose(setup.start, offset);
+  setup.prior->pose = compose(setup.start, offset);
   return setup;
 }
 
@@ -112,8 +112,8 @@ constexpr double kFar2 = 21.1;
 MissionSetup woken(const std::string& mission, const std::vector<std::string>& overrides) {
   MissionSetup setup =
       load_mission(std::string(VIGIA_SOURCE_DIR) + "/config/missions/" + mission, overrides);
-  setup.prior.pose = compose(setup.start, {1.0, -0.5, from_deg(120)});
-  setup.prior.covariance = Eigen::Vector3d(9.0, 9.0, 9.0).asDiagonal();
+  setup.prior->pose = compose(setup.start, {1.0, -0.5, from_deg(120)});
+  setup.prior->covariance = Eigen::Vector3d(9.0, 9.0, 9.0).asDiagonal();
   return setup;
 }
 

@@ -1,4 +1,4 @@
-#include "loss_watch.hpp"
+#include "lost_episodes.hpp"
 
 #include <algorithm>
 
@@ -8,8 +8,8 @@ double LostEpisode::began_s() const {
   return std::min(said_s.value_or(*passed_s), passed_s.value_or(*said_s));
 }
 
-void watch_for_loss(std::vector<LostEpisode>& episodes, double now_s, bool says_lost,
-                    double error_m) {
+void update_episodes(std::vector<LostEpisode>& episodes, double now_s, bool says_lost,
+                     double error_m) {
   const bool astray = error_m > LostEpisode::kLost_m;
   const bool open = !episodes.empty() && !episodes.back().ended_s;
   if (!open && (says_lost || astray)) episodes.emplace_back();
