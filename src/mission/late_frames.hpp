@@ -27,8 +27,7 @@ class LateFrames {
   void expose(ExposedFrame frame) { on_the_way_.push_back(std::move(frame)); }
   /// The newest frame that has arrived by @p now and was not taken before, if any.
   std::unique_ptr<ExposedFrame> take(Stamp now);
-  /// The frame that was exposed last, while it is on its way.
-  const ExposedFrame* newest() const { return on_the_way_.empty() ? nullptr : &on_the_way_.back(); }
+  Duration latency() const { return latency_; }
 
  private:
   Duration latency_;

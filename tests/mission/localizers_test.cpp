@@ -1,12 +1,12 @@
 #include "vigia/mission/localizers.hpp"
 
+#include "support/temp_dir.hpp"
+
 #include <fstream>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include "support/temp_dir.hpp"
 
 namespace vigia::mission {
 namespace {
@@ -20,8 +20,7 @@ MissionSetup load(const std::string& name, const std::vector<std::string>& overr
 
 TEST(Localizers, EveryNameMakesTheLocalizerOfThatName) {
   const MissionSetup setup = load("quixote-room");
-  for (const LocalizerEntry& entry : localizers())
-    EXPECT_EQ(entry.make(setup)->name(), entry.name);
+  for (const LocalizerEntry& entry : localizers()) EXPECT_EQ(entry.make(setup)->name(), entry.name);
 }
 
 TEST(Localizers, AMissionThatNamesNoneHasTheCheapOnesThatSuitRobotAndWorld) {

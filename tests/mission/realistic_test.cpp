@@ -13,13 +13,16 @@ class RealisticStory : public Listener {
  public:
   void on_event(const Event& event) override { ++count[event.kind]; }
   void on_tick(const Tick& tick) override {
-    if (tick.observation == nullptr) return;
-    ++observations;
-    late_by = tick.now - shot_of(*tick.observation).stamp;
-    if (tick.truth_at_exposure.stamp != shot_of(*tick.observation).stamp) ++mismatched;
-    if (shot_of(*tick.observation).look != tick.look) ++of_another_look;
+    const auto& observations_now = tick.estimator.observations;
+    for (std::size_t i = 0; i < observations_now.size(); ++i) {
+      const Shot& shot = shot_of(observations_now[i]);
+      ++observations;
+      late_by = tick.estimator.now - shot.stamp;
+      if (tick.estimator.truth->exposures[i].stamp != shot.stamp) ++mismatched;
+      if (shot.look != tick.attention->look) ++of_another_look;
+    }
   }
-  std::map<std::string, int> count;
+  std::map<EventKind, int> count;
   int observations = 0;
   int mismatched = 0;
   int of_another_look = 0;
@@ -73,8 +76,8 @@ TEST(Realistic, AKidnappedRobotSaysThatItIsLost) {
   RealisticStory story;
   evaluation::DriveScorer scorer;
   run_mission(setup, 3, {&story, &scorer});
-  EXPECT_EQ(story.count["kidnapped"], 1);
-  EXPECT_GE(story.count["lost"], 1);
+  EXPECT_EQ(story.count[EventKind::kidnapped], 1);
+  EXPECT_GE(story.count[EventKind::lost], 1);
 }
 
 }  // namespace

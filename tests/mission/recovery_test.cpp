@@ -12,10 +12,10 @@ namespace {
 class RecoveryStory : public Listener {
  public:
   void on_event(const Event& event) override { kinds.push_back(event.kind); }
-  bool tells(const std::string& kind) const {
+  bool tells(EventKind kind) const {
     return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
   }
-  std::vector<std::string> kinds;
+  std::vector<EventKind> kinds;
 };
 
 MissionSetup mission_with_prior_off_by(const Pose2& offset) {
@@ -32,8 +32,8 @@ TEST(Recovery, ARobotThatWasToldAWrongStartSaysItIsLostFindsItselfAndArrives) {
     evaluation::DriveScorer scorer;
     const Outcome outcome = run_mission(setup, seed, {&story, &scorer});
     EXPECT_EQ(outcome, Outcome::arrived) << "seed " << seed;
-    EXPECT_TRUE(story.tells("lost")) << "seed " << seed;
-    EXPECT_TRUE(story.tells("recovered")) << "seed " << seed;
+    EXPECT_TRUE(story.tells(EventKind::lost)) << "seed " << seed;
+    EXPECT_TRUE(story.tells(EventKind::recovered)) << "seed " << seed;
     EXPECT_LT(scorer.score().localizers.at("ekf").position_final_m, 0.05) << "seed " << seed;
     EXPECT_GT(scorer.score().localizers.at("ekf").lost_s, 0.0) << "seed " << seed;
   }
@@ -49,9 +49,9 @@ TEST(Recovery, TwoLandmarksThatAreNotThereSufficeWhereThereIsNoThirdToLookAt) {
                     "planner.exclude_s=60", "timeout_s=30"});
   RecoveryStory story;
   run_mission(setup, 1, {&story});
-  const auto lost = std::find(story.kinds.begin(), story.kinds.end(), "lost");
+  const auto lost = std::find(story.kinds.begin(), story.kinds.end(), EventKind::lost);
   ASSERT_NE(lost, story.kinds.end());
-  EXPECT_EQ(std::count(story.kinds.begin(), lost, "expired"), 2);
+  EXPECT_EQ(std::count(story.kinds.begin(), lost, EventKind::expired), 2);
 }
 
 TEST(Recovery, ARobotThatSeesNoLandmarkGivesUpAndSaysSo) {
@@ -62,8 +62,8 @@ TEST(Recovery, ARobotThatSeesNoLandmarkGivesUpAndSaysSo) {
   setup.recovery.tilt = from_deg(-80);
   RecoveryStory story;
   EXPECT_EQ(run_mission(setup, 1, {&story}), Outcome::stuck);
-  EXPECT_TRUE(story.tells("lost"));
-  EXPECT_FALSE(story.tells("recovered"));
+  EXPECT_TRUE(story.tells(EventKind::lost));
+  EXPECT_FALSE(story.tells(EventKind::recovered));
 }
 
 /// What happened on the way from being lost to being found.
@@ -75,21 +75,22 @@ class Search : public Listener {
         if (name == key) return value;
       return std::nan("");
     };
-    if (event.kind == "stroll") stroll_m.push_back(number("length_m"));
-    if (event.kind == "stroll") strolled_m.push_back(0.0);
-    if (event.kind == "looked_around") hypotheses.push_back(number("hypotheses"));
-    if (event.kind == "lost") lost_s = event.stamp.seconds();
-    searching = (searching || event.kind == "lost") && event.kind != "recovered";
-    just_found = just_found || event.kind == "recovered";
+    if (event.kind == EventKind::stroll) stroll_m.push_back(number("length_m"));
+    if (event.kind == EventKind::stroll) strolled_m.push_back(0.0);
+    if (event.kind == EventKind::looked_around) hypotheses.push_back(number("hypotheses"));
+    if (event.kind == EventKind::lost) lost_s = event.stamp.seconds();
+    searching = (searching || event.kind == EventKind::lost) && event.kind != EventKind::recovered;
+    just_found = just_found || event.kind == EventKind::recovered;
   }
   void on_tick(const Tick& tick) override {
-    const double way = (tick.truth.pose.position() - tick.true_pose_before.position()).norm();
+    const double way =
+        (tick.truth.pose.position() - tick.estimator.truth->pose_before.position()).norm();
     if (searching && !strolled_m.empty()) strolled_m.back() += way;
     if (searching && !tick.activations)
       most_in_sweep_mps = std::max(most_in_sweep_mps, std::abs(tick.base_command.v));
     if (!just_found) return;
     just_found = false;
-    const Belief& belief = *tick.localizers[tick.primary].belief;
+    const Belief& belief = tick.estimator.primary_belief();
     const Eigen::Vector3d error = difference(belief.pose, tick.truth.pose);
     distance2.push_back(error.dot(belief.covariance.inverse() * error));
     found_sigma_m = belief.position_sigma();

@@ -50,7 +50,7 @@ class DriveScorer : public mission::Listener {
   DriveScorer();
   ~DriveScorer() override;
 
-  void on_start(const mission::MissionSetup& setup, std::uint64_t seed) override;
+  void on_start(const mission::MissionStart& start) override;
   void on_tick(const mission::Tick& tick) override;
   void on_event(const mission::Event& event) override;
   void on_finish(mission::Outcome outcome, Stamp end) override;

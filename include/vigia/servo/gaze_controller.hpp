@@ -32,9 +32,6 @@ struct GazeParams {
   double look_angle = from_deg(0.3);
 };
 
-/// What the tracker is asked to do with the next frame.
-enum class TrackRequest { none, acquire, track };
-
 /// The tracker's answer to the last request, in pixels.
 struct GazeSighting {
   Eigen::Vector2d uv;
