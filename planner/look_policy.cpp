@@ -12,7 +12,7 @@ namespace {
 std::vector<const Landmark*> candidates(const LookContext& context) {
   std::vector<const Landmark*> result;
   for (const Landmark& landmark : context.landmarks.all()) {
-    if (can_be_watched(landmark, context, context.belief.pose)) result.push_back(&landmark);
+    if (can_be_observed(landmark, context, context.belief.pose)) result.push_back(&landmark);
   }
   return result;
 }
@@ -23,7 +23,7 @@ class FixedPolicy final : public LookPolicy {
   std::string_view name() const override { return "fixed"; }
   std::optional<LookChoice> choose(const LookContext& context) override {
     const Landmark* landmark = fixed_ ? context.landmarks.find(*fixed_) : nullptr;
-    if (landmark == nullptr || !can_be_watched(*landmark, context, context.belief.pose))
+    if (landmark == nullptr || !can_be_observed(*landmark, context, context.belief.pose))
       return std::nullopt;
     return LookChoice{*fixed_, {}, {}, "the fixed landmark"};
   }
@@ -83,7 +83,7 @@ std::unique_ptr<LookPolicy> make_pattern(const LookPolicyParts&) {
 
 }  // namespace
 
-bool can_be_watched(const Landmark& landmark, const LookContext& context, const Pose2& pose) {
+bool can_be_observed(const Landmark& landmark, const LookContext& context, const Pose2& pose) {
   const auto& excluded = context.excluded;
   return std::find(excluded.begin(), excluded.end(), landmark.id) == excluded.end() &&
          context.visibility.sight(landmark, pose) == Sight::visible;

@@ -15,6 +15,7 @@
 #include "vigia/evaluation/campaign.hpp"
 #include "vigia/evaluation/text_table.hpp"
 #include "vigia/mission/localizers.hpp"
+#include "vigia/perception/eye.hpp"
 #include "vigia/planner/look_policy.hpp"
 #include "vigia/tracking/trackers.hpp"
 
@@ -143,6 +144,8 @@ const std::vector<Topic>& topics() {
        [](const HelpOptions& options) { print_names(mission::localizers(), options.form()); }},
       {"trackers", "who may find landmarks in a picture",
        [](const HelpOptions& options) { print_names(tracking::trackers(), options.form()); }},
+      {"eyes", "who may turn a camera's pictures into observations",
+       [](const HelpOptions& options) { print_names(perception::eyes(), options.form()); }},
       {"policies", "who may choose the next landmark",
        [](const HelpOptions& options) { print_names(planner::look_policies(), options.form()); }},
   };
@@ -182,8 +185,10 @@ void help(const CLI::App& app, const HelpOptions& options) {
 void add_help(CLI::App& app, int& status) {
   auto options = std::make_shared<HelpOptions>();
   CLI::App* command = app.add_subcommand(
-      "help", "Explain a command, the keys of the YAML files, localizers, trackers, policies");
-  command->add_option("topic", options->topic, "A command, keys, localizers, trackers or policies");
+      "help",
+      "Explain a command, the keys of the YAML files, localizers, trackers, eyes, policies");
+  command->add_option("topic", options->topic,
+                      "A command, keys, localizers, trackers, eyes or policies");
   command->add_option("prefix", options->prefix, "Of the keys, e.g. planner.fuzzy");
   command->add_flag("--flat", options->flat, "Not the keys of the maps below the prefix");
   command->add_flag("--json", options->json, "Print as JSON");

@@ -45,9 +45,9 @@ Pose2 step_of(const OdometryIncrement& u) {
 
 /// A line of sight and the landmark that it may show.
 struct Bearing {
-  Eigen::Vector2d eye_r;
-  Eigen::Vector2d u_r;
-  Eigen::Vector2d landmark;
+  Eigen::Vector2d eye_r = Eigen::Vector2d::Zero();
+  Eigen::Vector2d u_r = Eigen::Vector2d::UnitX();
+  Eigen::Vector2d landmark = Eigen::Vector2d::Zero();
 };
 
 /// The poses from which three landmarks lie on three lines of sight: none, one or two. With
@@ -419,7 +419,7 @@ std::vector<Pose2> BearingOnlyLocalizer::seeds() const {
     std::array<std::vector<const Landmark*>, 3> landmarks;
     for (std::size_t i = 0; i < 3; ++i) {
       const Sightline& seen = remembered_[triple.looks[i]];
-      lines[i] = {seen.eye_r, unit_vector(seen.bearing), {}};
+      lines[i] = {seen.eye_r, unit_vector(seen.bearing), Eigen::Vector2d::Zero()};
       landmarks[i] = candidates_for(seen);
     }
     for (const Landmark* first : landmarks[0])

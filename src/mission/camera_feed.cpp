@@ -4,11 +4,12 @@
 
 namespace vigia::mission {
 
-CameraFeed::CameraFeed(const Camera& camera, Duration delay, std::unique_ptr<perception::Eye> eye)
+CameraFeed::CameraFeed(const Camera& camera, Duration delay, Duration processing,
+                       std::unique_ptr<perception::Eye> eye)
     : camera_(camera.id),
       period_(Duration::from_seconds(camera.period_s)),
       phase_(Duration::from_seconds(camera.phase_s)),
-      late_(Duration{Duration::from_seconds(camera.latency_s).ns + delay.ns}),
+      late_(Duration{Duration::from_seconds(camera.latency_s).ns + delay.ns}, processing),
       eye_(std::move(eye)) {}
 
 bool CameraFeed::due(Stamp now) {

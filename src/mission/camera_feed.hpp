@@ -17,8 +17,9 @@ namespace vigia::mission {
 /// has arrived.
 class CameraFeed {
  public:
-  /// @p delay: of every delivery, on top of the camera's own latency.
-  CameraFeed(const Camera& camera, Duration delay, std::unique_ptr<perception::Eye> eye);
+  /// @p delay: of every delivery, on top of the camera's own latency. @p processing: of a frame.
+  CameraFeed(const Camera& camera, Duration delay, Duration processing,
+             std::unique_ptr<perception::Eye> eye);
 
   CameraId id() const { return camera_; }
   Duration latency() const { return late_.latency(); }

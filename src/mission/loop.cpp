@@ -54,7 +54,7 @@ Loop::Loop(const MissionSetup& setup, std::uint64_t seed, const std::vector<List
       simulator_(setup.robot, setup.world, setup.appearance, draw_start(setup, seed), seed,
                  setup.disturbances),
       rig_(setup.robot.rig()),
-      cameras_(make_feeds(setup, rig_, simulator_.latency())),
+      cameras_(make_feeds(setup, rig_, simulator_.latency(), simulator_.processing())),
       attention_(make_attention(setup, rig_, seed, log_)),
       recovery_(make_recovery(setup, rig_, cameras_, log_)),
       navigator_(setup, log_),

@@ -22,9 +22,9 @@ void Navigator::record(const pilot::PilotOutput& output) {
   if (output.status == PilotStatus::evading && !evading_) {
     evading_ = true;
     Event::Numbers numbers{{"station_m", output.station_m}};
-    if (output.in_the_way) {
-      numbers.emplace_back("x_m", output.in_the_way->x());
-      numbers.emplace_back("y_m", output.in_the_way->y());
+    if (output.obstacle_ahead) {
+      numbers.emplace_back("x_m", output.obstacle_ahead->x());
+      numbers.emplace_back("y_m", output.obstacle_ahead->y());
     }
     log_.record(EventKind::evade, numbers);
   } else if (output.status == PilotStatus::driving && evading_) {
@@ -41,7 +41,7 @@ void Navigator::record(const pilot::PilotOutput& output) {
 void Navigator::go_round(const pilot::PilotInput& input, const pilot::PilotOutput& output,
                          NavigationStep& step) {
   const Pose2& here = input.belief.pose;
-  const Eigen::Vector2d where = output.in_the_way.value_or(here.position());
+  const Eigen::Vector2d where = output.obstacle_ahead.value_or(here.position());
   log_.record(EventKind::blocked,
               {{"x_m", where.x()}, {"y_m", where.y()}, {"for_s", pilot_.stalled_s()}});
   if (pilot_.stalled_s() >= setup_.pilot.avoidance.give_up_s) {

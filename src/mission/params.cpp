@@ -17,7 +17,7 @@ void describe_fuzzy(ParamVisitor& v, LookParams& p) {
 
 void describe_look(ParamVisitor& v, LookParams& p) {
   v.number("period_s", p.period_s, {0.0, 10.0}, "how often the planner is asked");
-  v.number("dwell_s", p.dwell_s, {0.0, 60.0}, "how long a landmark is watched once tracked");
+  v.number("dwell_s", p.dwell_s, {0.0, 60.0}, "how long a landmark is observed once tracked");
   v.number("timeout_s", p.timeout_s, {0.1, 600.0},
            "an order without a feature by then has expired");
   v.number("radius_px", p.radius_px, {4.0, 200.0}, "apparent radius of a disc that the zoom holds");

@@ -19,11 +19,12 @@ bool on_head(const Camera& camera) {
   return std::holds_alternative<HeadGeometry>(camera.mount);
 }
 
-std::vector<CameraFeed> make_feeds(const MissionSetup& setup, const Rig& rig, Duration delay) {
+std::vector<CameraFeed> make_feeds(const MissionSetup& setup, const Rig& rig, Duration delay,
+                                   Duration processing) {
   std::vector<CameraFeed> feeds;
   for (auto camera = rig.cameras.begin(); camera != rig.cameras.end(); ++camera) {
     const bool directed = camera == directed_camera(rig);
-    feeds.emplace_back(*camera, delay,
+    feeds.emplace_back(*camera, delay, processing,
                        find_name(perception::eyes(), "landmark")
                            ->make({setup.world.landmarks, setup.on_ground(), setup.noise.sensor,
                                    setup.tracker, directed}));

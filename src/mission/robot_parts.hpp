@@ -17,8 +17,10 @@ namespace vigia::mission {
 
 bool on_head(const Camera& camera);
 
-/// One for each camera of the rig, in its order. @p delay: of every delivery.
-std::vector<CameraFeed> make_feeds(const MissionSetup& setup, const Rig& rig, Duration delay);
+/// One for each camera of the rig, in its order. @p delay: of every delivery. @p processing: of a
+/// frame.
+std::vector<CameraFeed> make_feeds(const MissionSetup& setup, const Rig& rig, Duration delay,
+                                   Duration processing);
 /// From an exposure to its delivery, the longest of the cameras.
 Duration longest_latency(const std::vector<CameraFeed>& feeds);
 

@@ -17,11 +17,12 @@ struct Deliveries {
   std::vector<std::int64_t> arrived_ms;
 };
 
-Deliveries deliveries_of(const Camera& camera, Duration delay, int ticks) {
+Deliveries deliveries_of(const Camera& camera, Duration delay, int ticks,
+                         Duration processing = {}) {
   const MissionSetup setup =
       load_mission(std::string(VIGIA_SOURCE_DIR) + "/config/missions/armingol-room.yaml");
   sim::Simulator simulator(setup.robot, setup.world, setup.appearance, setup.start, 1);
-  CameraFeed feed(camera, delay, nullptr);
+  CameraFeed feed(camera, delay, processing, nullptr);
   Deliveries result;
   for (int i = 1; i <= ticks; ++i) {
     const Stamp now{i * 40'000'000LL};
@@ -54,6 +55,20 @@ TEST(CameraFeed, DeliversLateByItsLatencyAndTheDelay) {
   const Deliveries late = deliveries_of(camera, Duration{20'000'000}, 4);
   EXPECT_THAT(late.exposed_ms, ElementsAre(40, 80));
   EXPECT_THAT(late.arrived_ms, ElementsAre(120, 160));
+}
+
+TEST(CameraFeed, AFrameThatTakesLongToProcessIsLateAndMakesItDropThoseThatArriveMeanwhile) {
+  Camera camera;
+  camera.latency_s = 0.04;
+  const Deliveries slow = deliveries_of(camera, {}, 9, Duration{100'000'000});
+  EXPECT_THAT(slow.exposed_ms, ElementsAre(40, 160));
+  EXPECT_THAT(slow.arrived_ms, ElementsAre(200, 320));
+}
+
+TEST(CameraFeed, ProcessingFasterThanFramesArriveDropsNone) {
+  const Deliveries quick = deliveries_of(Camera{}, {}, 4, Duration{30'000'000});
+  EXPECT_THAT(quick.exposed_ms, ElementsAre(40, 80, 120));
+  EXPECT_THAT(quick.arrived_ms, ElementsAre(80, 120, 160));
 }
 
 }  // namespace

@@ -39,6 +39,36 @@ TEST(Recovery, ARobotThatWasToldAWrongStartSaysItIsLostFindsItselfAndArrives) {
   }
 }
 
+TEST(Recovery, ARobotWithoutAPriorStartsLostFindsItselfAndArrives) {
+  const MissionSetup setup =
+      load_mission(std::string(VIGIA_SOURCE_DIR) + "/config/missions/armingol-room.yaml",
+                   {"start.prior=false", "localization.localizers=[ekf, bearing_only]"});
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    evaluation::DriveScorer scorer;
+    EXPECT_EQ(run_mission(setup, seed, {&scorer}), Outcome::arrived) << "seed " << seed;
+    const auto& ekf = scorer.score().localizers.at("ekf");
+    EXPECT_GE(ekf.loss.right_recoveries, 1) << "seed " << seed;
+    EXPECT_EQ(ekf.loss.wrong_recoveries, 0) << "seed " << seed;
+    EXPECT_EQ(ekf.loss.false_alarms, 0) << "seed " << seed;
+    EXPECT_LT(ekf.position_final_m, 0.05) << "seed " << seed;
+    const auto& bearings = scorer.score().localizers.at("bearing_only");
+    EXPECT_GT(bearings.lost_s + bearings.loss.ambiguous_s, 0.0) << "seed " << seed;
+    EXPECT_EQ(bearings.loss.wrong_recoveries, 0) << "seed " << seed;
+  }
+}
+
+TEST(Recovery, BearingsAloneDriveARobotToItsGoal) {
+  const MissionSetup setup =
+      load_mission(std::string(VIGIA_SOURCE_DIR) + "/config/missions/armingol-room.yaml",
+                   {"localization.localizers=[bearing_only]"});
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    evaluation::DriveScorer scorer;
+    EXPECT_EQ(run_mission(setup, seed, {&scorer}), Outcome::arrived) << "seed " << seed;
+    EXPECT_LT(scorer.score().localizers.at("bearing_only").position_rmse_m, 0.15)
+        << "seed " << seed;
+  }
+}
+
 TEST(Recovery, TwoLandmarksThatAreNotThereSufficeWhereThereIsNoThirdToLookAt) {
   const std::string discs =
       "world.landmarks=[{id: 0, kind: disc, centre_m: [3.4, 3.2, 1.6], normal_deg: 180, radius_m: "

@@ -37,7 +37,7 @@ struct LandmarkStudy {
   double suitability = 0.0;    ///< mean over the control positions; 0 where it is not usable
   double nearest_m = 0.0;      ///< over the control positions that see it
   double farthest_m = 0.0;
-  double most_oblique = 0.0;  ///< view angle, rad
+  double max_view_angle = 0.0;  ///< rad
   /// Zoom group that its distances belong to most; each kind and size of landmark has groups of its
   /// own.
   std::size_t group = 0;
@@ -71,7 +71,7 @@ struct PerceptionPlan {
 /// axis. At its group's distance a disc has the wanted size; a pattern or tag is so much smaller
 /// that one nearer by the root of distance_ratio fills the image. Preselected are the most suitable
 /// landmark of the group, and those most suitable to reduce the uncertainty along x and along y
-/// that can be watched without an optics move.
+/// that can be observed without an optics move.
 PerceptionPlan plan_perception(const Path& path, const LandmarkMap& landmarks,
                                const Visibility& visibility, const HeadModel& head,
                                FuzzySupervisors& supervisors, const PerceptionParams& params);

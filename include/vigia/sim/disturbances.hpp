@@ -15,9 +15,11 @@ struct MotionBlurParams {
   int max_instants = 16;  ///< of which the mean is taken, at most
 };
 
-/// A frame is delivered late.
+/// A frame is delivered late, and what is seen in it is known later still.
 struct LatencyParams {
   double latency_s = 0.08;  ///< from the middle of the exposure
+  double processing_s =
+      0.0;  ///< that a frame takes; one that arrives meanwhile waits, or is dropped
 };
 
 /// The light's gain varies over the room and in time.
@@ -52,8 +54,8 @@ struct BacklashParams {
 
 /// The wheels do not report what the base does.
 struct WheelSlipParams {
-  double per_m = 0.15;   ///< slips that begin per metre driven
-  double min_m = 0.1;  ///< length of a slip
+  double per_m = 0.15;  ///< slips that begin per metre driven
+  double min_m = 0.1;   ///< length of a slip
   double max_m = 0.4;
   double min_loss = 0.02;  ///< share of the way that is lost during a slip
   double max_loss = 0.10;

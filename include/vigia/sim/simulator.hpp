@@ -61,6 +61,8 @@ class Simulator {
   Intrinsics true_intrinsics() const;
   /// How late frames are delivered.
   Duration latency() const { return latency_; }
+  /// How long a delivered frame takes to process.
+  Duration processing() const { return processing_; }
   /// Distance from the robot's hull to the nearest true face or person, m; negative: collided.
   double clearance() const;
   /// The same of people alone; infinite without any.
@@ -83,6 +85,7 @@ class Simulator {
   std::optional<RangeRing> ring_;
   std::optional<Kidnapping> kidnapping_;
   Duration latency_;
+  Duration processing_;
 };
 
 }  // namespace vigia::sim
