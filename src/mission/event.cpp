@@ -30,8 +30,8 @@ std::string_view to_string(EventKind kind) {
       return "lost";
     case EventKind::looked_around:
       return "looked_around";
-    case EventKind::stroll:
-      return "stroll";
+    case EventKind::exploration:
+      return "exploration";
     case EventKind::recovered:
       return "recovered";
     case EventKind::wait:

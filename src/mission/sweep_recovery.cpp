@@ -163,7 +163,7 @@ bool SweepRecovery::begin_exploration(const RecoveryInput& input) {
       Exploration{pilot::Pilot(Path({from, to}), setup_.world.plan, setup_.robot.robot.radius_m,
                                setup_.robot.robot.base, setup_.pilot),
                   input.readings.now + Duration::from_seconds(kExploration_s)});
-  log_.record(EventKind::stroll, {{"length_m", direction->range_m}});
+  log_.record(EventKind::exploration, {{"length_m", direction->range_m}});
   return true;
 }
 

@@ -51,6 +51,8 @@ std::string header(const MissionStart& start) {
       text += "," + name + "_" + column;
   text += ",activation_follow,activation_avoid,activation_hold";
   for (std::size_t i = 1; i < start.eyes.size(); ++i) text += eye_header(start.eyes, i);
+  for (const auto& name : start.setup.localizers)
+    text += "," + name + "_lost_probability," + name + "_hypotheses";
   return text + "\n";
 }
 
@@ -145,6 +147,9 @@ void Tables::tick(const Tick& tick) {
   for (const auto& localizer : estimator.localizers) put_belief(line, localizer);
   put_activations(line, tick.activations);
   for (std::size_t i = 1; i < eyes_.size(); ++i) put_eye(line, *eyes_[i], tick.eyes);
+  for (const auto& localizer : estimator.localizers)
+    put(line, ",{:.4g},{}", localizer.belief->lost_probability,
+        localizer.belief->hypotheses.size());
   line.push_back('\n');
   ticks_.write(view(line));
 

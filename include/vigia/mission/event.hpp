@@ -24,7 +24,7 @@ enum class EventKind {
   restart,        ///< … and goes on
   lost,           ///< the primary localizer's belief is lost
   looked_around,  ///< a lost robot has finished a sweep
-  stroll,         ///< … and goes to another place to look around from
+  exploration,    ///< … and goes to another place to look around from
   recovered,      ///< a lost robot knows again where it is
   wait,           ///< the pilot waits for something to go away
   evade,          ///< the pilot goes round something
