@@ -42,7 +42,7 @@ Rider rider_of(std::shared_ptr<Localizer> localizer) {
 Rider odometry_rider(const OdometryNoise& noise) {
   auto localizer = std::make_shared<localization::OdometryLocalizer>(noise);
   return {[localizer](Stamp stamp, const std::optional<Prior>& prior) {
-            localizer->reset(stamp, prior.value_or(Prior{}));
+            localizer->reset(stamp, prior);
           },
           [localizer](const OdometryIncrement& u) { localizer->predict(u); },
           [](const localization::FieldScan&) {},

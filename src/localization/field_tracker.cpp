@@ -143,6 +143,7 @@ double FieldTracker::doubt() const {
 void FieldTracker::refresh_belief() {
   belief_.hypotheses.clear();
   belief_.status = BeliefStatus::lost;
+  belief_.lost_probability = doubt();
   if (hypotheses_.empty()) {
     const FieldMap& map = model_->map();
     belief_.pose = {};

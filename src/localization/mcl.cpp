@@ -367,6 +367,7 @@ void Mcl::refresh_belief() {
   belief_.pose = clusters.front().pose;
   belief_.covariance = clusters.front().covariance;
   belief_.hypotheses.clear();
+  belief_.lost_probability = 1.0 - clusters.front().weight;
   belief_.status = BeliefStatus::tracking;
   if (belief_.position_sigma() > params_.lost_sigma_m || clusters.front().weight < 0.3) {
     const Spread all = spread_of_all();

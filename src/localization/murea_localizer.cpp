@@ -27,6 +27,7 @@ void MureaLocalizer::reset(Stamp stamp, const std::optional<Prior>& prior) {
   belief_ = Belief{};
   belief_.stamp = stamp;
   belief_.status = prior ? BeliefStatus::tracking : BeliefStatus::lost;
+  belief_.lost_probability = prior ? 0.0 : 1.0;
   if (prior) {
     belief_.pose = prior->pose;
     belief_.covariance = prior->covariance;
@@ -56,6 +57,7 @@ void MureaLocalizer::accept(const MureaFix& fix, bool global) {
   belief_.pose = fix.pose;
   belief_.covariance = fix.covariance;
   belief_.hypotheses.clear();
+  belief_.lost_probability = 0.0;
   estimate_ = Prior{fix.pose, fix.covariance};
   if (!global) return;
   const bool ambiguous = fix.runner_up > params_.ambiguous_share * fix.votes;
@@ -64,6 +66,7 @@ void MureaLocalizer::accept(const MureaFix& fix, bool global) {
   const double share = fix.votes / (fix.votes + fix.runner_up);
   belief_.hypotheses = {{fix.pose, fix.covariance, share},
                         {fix.second, fix.covariance, 1.0 - share}};
+  belief_.lost_probability = 1.0 - share;
 }
 
 void MureaLocalizer::update(const FieldScan& scan) {
@@ -84,10 +87,12 @@ void MureaLocalizer::update(const FieldScan& scan) {
   fewer_votes_ = 0;
   usual_.reset();
   const MureaFix fix = murea_.locate(scan);
-  if (fix.found)
+  if (fix.found) {
     accept(fix, true);
-  else
+  } else {
     belief_.status = BeliefStatus::lost;
+    belief_.lost_probability = 1.0;
+  }
 }
 
 }  // namespace vigia::localization
