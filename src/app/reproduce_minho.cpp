@@ -228,9 +228,12 @@ void draw_heat_map(const MinhoRun& run, const FieldMap& map, const FrameStudy& s
 
 void add_drive_rows(const MinhoRun& run, const std::string& name,
                     const std::vector<FieldDrive>& drives) {
-  for (const auto& [localizer, label] : kTrackers) {
+  for (const auto& tracker : kTrackers) {
+    const FieldLocalizer localizer = tracker.first;
     const FieldDriveErrors errors = evaluation::drive_errors(drives, localizer);
-    const auto row = [&](const char* what) { return fmt::format("{}: {}, {}", name, label, what); };
+    const auto row = [&](const char* what) {
+      return fmt::format("{}: {}, {}", name, tracker.second, what);
+    };
     run.add_best(row("position, mean"), "cm", kCm * errors.mean_m, errors.frames);
     run.add_best(row("position, greatest"), "cm", kCm * errors.max_m, errors.frames);
     PaperRow ratio{row("rms by the PCRLB"), "1"};
