@@ -107,6 +107,8 @@ void print_keys(const HelpOptions& options) {
   TextRows rows{{"key", "default", "values", "meaning"}};
   for (const KeyRow& row : keys) {
     const std::string rest = rest_of(row.key, options.prefix);
+    // Below its heading in a page a map needs no row of its own.
+    if (markdown && rest.empty() && keys.size() > 1) continue;
     rows.push_back({markdown ? "`" + (rest.empty() ? row.key : rest) + "`" : row.key, usual_of(row),
                     values_of(row), meaning_of(row)});
   }
