@@ -163,7 +163,9 @@ std::vector<std::string> command_names(const CLI::App& app) {
 }
 
 void print_overview(const CLI::App& app) {
-  fmt::print("{}\nTopics of `vigia help`:\n", app.help());
+  // CLI::App::help() would be that of the command which is running.
+  const std::string all = app.get_formatter()->make_help(&app, "vigia", CLI::AppFormatMode::Normal);
+  fmt::print("{}\nTopics of `vigia help`:\n", all);
   for (const Topic& topic : topics()) fmt::print("  {:<27} {}\n", topic.name, topic.meaning);
 }
 
