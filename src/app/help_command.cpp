@@ -69,6 +69,7 @@ std::vector<KeyRow> keys_below(const std::string& path, bool flat) {
   }
   if (!found.empty()) return found;
   std::vector<std::string> names;
+  names.reserve(all.size());
   for (const KeyRow& row : all) names.push_back(row.key);
   throw InputError(fmt::format("there is no key '{}'{}", path, suggestion(path, names)));
 }
