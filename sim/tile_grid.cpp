@@ -37,7 +37,8 @@ const std::vector<const Tile*>& TileGrid::row(int u, int u_end, int tile_v,
   const std::vector<ViewId>* among = nullptr;
   row_.clear();
   for (int column = first; column <= last; ++column) {
-    Tile& tile = tiles_[static_cast<std::size_t>(tile_v / kTile * columns_ + column)];
+    const int index = tile_v / kTile * columns_ + column;
+    Tile& tile = tiles_[static_cast<std::size_t>(index)];
     if (!tile.known) {
       if (among == nullptr) {
         among = &every_;
