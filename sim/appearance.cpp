@@ -18,17 +18,27 @@ Clutter read_clutter(MapReader& reader, const WorldMap& world) {
   Clutter clutter;
   clutter.kind = static_cast<ClutterKind>(reader.choice("kind", kKinds));
   clutter.centre_w = reader.vector3("centre_m", {-1e4, 1e4});
-  clutter.on_floor = reader.boolean("on_floor", false);
-  if (!clutter.on_floor)
+  if (reader.boolean("on_floor", false)) clutter.place = ClutterPlace::floor;
+  if (reader.boolean("on_ceiling", false)) {
+    if (clutter.place == ClutterPlace::floor)
+      throw reader.error("on_ceiling", "clutter is on the floor or on the ceiling, not on both");
+    clutter.place = ClutterPlace::ceiling;
+  }
+  if (clutter.place == ClutterPlace::face)
     clutter.normal_yaw = from_deg(reader.number("normal_deg", {-360.0, 360.0}));
   clutter.size_m = reader.number("size_m", {0.005, 2.0}, 0.05);
   clutter.turn = from_deg(reader.number("turn_deg", {-360.0, 360.0}, 0.0));
   clutter.grey = reader.number("grey", {0.0, 255.0}, 60.0);
   reader.finish();
 
-  if (clutter.on_floor) {
+  if (clutter.place == ClutterPlace::floor) {
     if (std::abs(clutter.centre_w.z()) > 0.02)
       throw reader.error("centre_m", "clutter on the floor must have height 0");
+    return clutter;
+  }
+  if (clutter.place == ClutterPlace::ceiling) {
+    if (std::abs(clutter.centre_w.z() - world.plan.ceiling_m()) > 0.02)
+      throw reader.error("centre_m", "clutter on the ceiling must have the room's height");
     return clutter;
   }
   const Eigen::Vector2d normal = unit_vector(clutter.normal_yaw);
@@ -45,6 +55,19 @@ Clutter read_clutter(MapReader& reader, const WorldMap& world) {
     throw reader.error("centre_m",
                        "clutter must lie on a face (within 2 cm) whose normal is normal_deg");
   return clutter;
+}
+
+Stripe read_stripe(MapReader& reader) {
+  Stripe stripe;
+  stripe.from = reader.vector2("from_m", {-1e4, 1e4});
+  stripe.to = reader.vector2("to_m", {-1e4, 1e4});
+  stripe.width_m = reader.number("width_m", {0.001, 10.0}, stripe.width_m);
+  stripe.grey = reader.number("grey", {0.0, 255.0}, stripe.grey);
+  stripe.on_ceiling = reader.boolean("on_ceiling", stripe.on_ceiling);
+  reader.finish();
+  if ((stripe.to - stripe.from).norm() < 1e-3)
+    throw reader.error("to_m", "the stripe has no length: it ends where it begins");
+  return stripe;
 }
 
 bool near_landmark(const Eigen::Vector3d& p, const WorldMap& world, double plate_factor) {
@@ -90,7 +113,7 @@ void scatter(const WorldMap& world, double per_m2, Appearance& appearance) {
   const auto spots = std::llround(per_m2 * size.x() * size.y());
   for (long long i = 0; i < spots; ++i) {
     Clutter mark = random_mark(random);
-    mark.on_floor = true;
+    mark.place = ClutterPlace::floor;
     mark.centre_w << low.x() + size.x() * random.uniform(0.0, 1.0),
         low.y() + size.y() * random.uniform(0.0, 1.0), 0.0;
     appearance.clutter.push_back(mark);
@@ -119,6 +142,7 @@ std::shared_ptr<const Appearance> read_appearance(MapReader& reader, const World
       static_cast<PlateShape>(look.choice("plate_shape", {"square", "disc"}, 0));
   const double per_m2 = look.number("clutter_per_m2", {0.0, 20.0}, 0.25);
   look.finish();
+  for (MapReader& item : reader.maps("stripes")) appearance->stripes.push_back(read_stripe(item));
   for (MapReader& item : reader.maps("clutter"))
     appearance->clutter.push_back(read_clutter(item, world));
   scatter(world, per_m2, *appearance);

@@ -29,6 +29,7 @@ void read(MapReader& r, LightParams& p) {
 void read(MapReader& r, MountingParams& p) {
   p.angle = degrees(r, "angle_deg", {0.0, 10.0}, p.angle);
   p.offset_m = r.number("offset_m", {0.0, 0.5}, p.offset_m);
+  p.camera_offset_m = r.number("camera_offset_m", {0.0, 0.5}, p.camera_offset_m);
 }
 
 void read(MapReader& r, ZoomCalibrationParams& p) {

@@ -29,10 +29,12 @@ struct LightParams {
   double step_every_s = 30;    ///< mean time between two steps of some lamp; 0: none
 };
 
-/// The head sits a little askew on the base.
+/// The head sits a little askew on the base, and the camera beside its place on the head; a fixed
+/// camera sits askew on the base.
 struct MountingParams {
   double angle = from_deg(0.25);  ///< σ of yaw, pitch and roll, rad
   double offset_m = 0.003;        ///< σ of each coordinate
+  double camera_offset_m = 0.0;   ///< σ of each coordinate of the optical centre in the head
 };
 
 /// The table of focal lengths is a little wrong.

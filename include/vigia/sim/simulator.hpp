@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "vigia/core/rig.hpp"
 #include "vigia/sim/camera_errors.hpp"
@@ -15,21 +16,34 @@
 
 namespace vigia::sim {
 
-/// Everything that a mission's file says of its robot: the robot, its camera and its zoom.
+/// A camera of the robot, and how it turns light into grey levels.
+struct CameraSetup {
+  Camera camera;  ///< what the robot believes; the errors of its calibration on top are the truth
+  ImagingParams imaging;
+};
+
+/// Everything that a mission's file says of its robot: the base, the head and the cameras.
 struct RobotSetup {
   std::string name;
   RobotParams robot;
-  ZoomCalibration zoom;  ///< what the robot believes; per-look focal error on top is the truth
-  ImagingParams imaging;
+  std::vector<CameraSetup> cameras{CameraSetup{}};  ///< at least one; one zoom at most
   double initial_zoom_mm = 8.0;
   std::optional<RangeRingParams> range_ring;
 
-  /// The robot's cameras: one on the head, with the zoom, of id 0.
   Rig rig() const;
+  /// The camera on the head that has a zoom, or nullptr.
+  const CameraSetup* pan_tilt_zoom() const;
+  /// The calibration of that camera. std::logic_error without one.
+  const ZoomCalibration& zoom() const;
 };
 
-/// Reads a robot file: keys `name`, `base`, `head`, `zoom`, `camera`, `odometry`, `sensor`,
-/// `range_ring`. Throws InputError with the place of what is wrong.
+/// A robot of one pan-tilt-zoom camera, of id 0.
+RobotSetup pan_tilt_zoom_robot(const RobotParams& robot, const ZoomCalibration& zoom,
+                               const ImagingParams& imaging = {});
+
+/// Reads a robot file: keys `name`, `base`, `head`, `odometry`, `sensor`, `range_ring`, and either
+/// `cameras` or, of a robot with one pan-tilt-zoom camera, `zoom` and `camera`. Throws InputError
+/// with the place of what is wrong.
 RobotSetup read_robot_setup(MapReader& reader);
 
 /// The simulated world with the robot in it: the room as it truly is, which the disturbances make
@@ -51,13 +65,16 @@ class Simulator {
   /// Puts the robot elsewhere when the time has come, once; says whether it did.
   bool kidnap();
 
-  /// The camera's exposure whose middle is now.
-  std::unique_ptr<imaging::Frame> expose() const;
-  /// The camera's true intrinsics now: calibrated at the zoom's position, scaled by the look's
-  /// focal error, with the errors of the calibration.
-  Intrinsics true_intrinsics() const;
-  /// How late frames are delivered.
-  Duration latency() const { return latency_; }
+  /// Whether the camera exposes at the tick that has just passed: its first exposure is at phase_s,
+  /// one follows every period_s, each in the tick in which its time falls.
+  bool exposes(CameraId camera) const;
+  /// The exposure of a camera whose middle is now.
+  std::unique_ptr<imaging::Frame> expose(CameraId camera = 0) const;
+  /// A camera's true model now: calibrated, at the zoom's position, scaled by the look's focal
+  /// error, with the errors of the calibration.
+  CameraModel true_model(CameraId camera = 0) const;
+  /// How late a camera's frames are delivered.
+  Duration latency(CameraId camera = 0) const;
   /// Distance from the robot's hull to the nearest true face or person, m; negative: collided.
   double clearance() const;
   /// The same of people alone; infinite without any.
@@ -66,20 +83,29 @@ class Simulator {
   RangeScan scan();
 
  private:
+  struct TrueCamera {
+    CameraSetup setup;
+    CameraErrors errors;
+    CameraMount mount;
+  };
+
+  void disturb(const DisturbanceParams& disturbances, std::uint64_t seed);
   Bystander bystander() const;
-  std::vector<Exposure::Instant> instants(const Intrinsics& intrinsics) const;
+  const TrueCamera& camera_of(CameraId id) const;
+  std::vector<Exposure::Instant> instants(const TrueCamera& camera, const CameraModel& model) const;
 
   RobotSetup setup_;
   WorldMap world_;
   Robot robot_;
   Scene scene_;
-  CameraErrors camera_errors_;
+  std::vector<TrueCamera> cameras_;
+  Stamp last_tick_;  ///< before the present one
   std::optional<MotionBlurParams> motion_blur_;
   std::optional<LightField> light_;
   std::optional<Walkers> walkers_;
   std::optional<RangeRing> ring_;
   std::optional<Kidnapping> kidnapping_;
-  Duration latency_;
+  Duration latency_;  ///< beside the cameras' own
 };
 
 }  // namespace vigia::sim
