@@ -90,7 +90,7 @@ void Loop::recover(const imaging::Frame* frame) {
 
 /// A pattern says who it is and where the robot stands: the surest one of a sweep counts.
 void Loop::read_code(const PointsObservation& seen) {
-  localization::PatternFixLocalizer fix(setup_.world.landmarks, setup_.robot.robot.head,
+  localization::PatternFixLocalizer fix(setup_.world.landmarks, setup_.on_ground(),
                                         pattern_fix_params(setup_));
   fix.reset(shot_of(seen).stamp, {});
   if (fix.update(seen).status != localization::UpdateStatus::fused) return;

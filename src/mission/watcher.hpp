@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "vigia/core/belief.hpp"
-#include "vigia/core/head.hpp"
 #include "vigia/core/landmark.hpp"
+#include "vigia/core/rig.hpp"
 #include "vigia/core/sensor_noise.hpp"
 #include "vigia/imaging/canvas.hpp"
 #include "vigia/servo/gaze_controller.hpp"

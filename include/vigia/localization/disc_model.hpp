@@ -5,10 +5,10 @@
 #include <Eigen/Core>
 
 #include "vigia/core/camera.hpp"
-#include "vigia/core/head.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/core/observation.hpp"
 #include "vigia/core/pose.hpp"
+#include "vigia/core/rig.hpp"
 
 namespace vigia::localization {
 

@@ -7,10 +7,10 @@
 #include <Eigen/Core>
 
 #include "vigia/core/belief.hpp"
-#include "vigia/core/head.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/core/observation.hpp"
 #include "vigia/core/odometry.hpp"
+#include "vigia/core/rig.hpp"
 #include "vigia/core/sensor_noise.hpp"
 #include "vigia/localization/disc_model.hpp"
 #include "vigia/localization/points_model.hpp"

@@ -6,9 +6,9 @@
 
 #include "vigia/core/belief.hpp"
 #include "vigia/core/floor_plan.hpp"
-#include "vigia/core/head.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/core/observation.hpp"
+#include "vigia/core/rig.hpp"
 #include "vigia/core/sensor_noise.hpp"
 
 namespace vigia::localization {
