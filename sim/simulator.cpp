@@ -157,8 +157,8 @@ std::vector<Exposure::Instant> Simulator::instants(const TrueCamera& camera,
         robot_.camera_pose_after(camera.mount, -half);
     const double moved_px = std::visit([&](const auto& m) { return motion_px(moved, m); }, model);
     if (moved_px > kStill_px)
-      count = static_cast<int>(
-          std::min<double>(motion_blur_->most_instants, 1.0 + std::ceil(moved_px)));
+      count =
+          static_cast<int>(std::min<double>(motion_blur_->max_instants, 1.0 + std::ceil(moved_px)));
   }
   if (count == 1) return {{robot_.camera_pose(camera.mount), people}};
   std::vector<Exposure::Instant> instants;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vigia/mission/localizers.hpp"
+
 namespace vigia::mission {
 namespace {
 
@@ -37,7 +39,7 @@ Loop::Loop(const MissionSetup& setup, std::uint64_t seed, const std::vector<List
                    relocalizer_params(setup)),
       scheduler_(setup, information_, seed),
       watcher_(setup.tracker, setup.world.landmarks, setup.on_ground(), setup.ekf.sensor),
-      gaze_(setup.robot.robot.head, setup.robot.robot.head_limits, setup.robot.zoom, setup.gaze,
+      gaze_(setup.robot.robot.head, setup.robot.robot.head_limits, setup.robot.zoom(), setup.gaze,
             setup.world.ground),
       base_motion_({setup.robot.robot.base, setup.tick_s}),
       pilot_(setup.path, setup.world.plan, setup.robot.robot.radius_m, setup.robot.robot.base,
@@ -49,7 +51,7 @@ Loop::Loop(const MissionSetup& setup, std::uint64_t seed, const std::vector<List
       dt_(Duration::from_seconds(setup.tick_s)) {
   for (const auto& name : setup.localizers) {
     if (name == setup.primary) primary_ = localizers_.size();
-    localizers_.push_back(make_localizer(name, setup));
+    localizers_.push_back(find_name(localizers(), name)->make(setup));
     localizers_.back()->reset(now_, setup.prior);
   }
   localizer_ticks_.resize(localizers_.size());

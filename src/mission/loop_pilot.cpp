@@ -17,9 +17,9 @@ void Loop::tell_pilot(const pilot::PilotOutput& output) {
   if (output.status == PilotStatus::evading && !evading_) {
     evading_ = true;
     Numbers numbers{{"station_m", output.station_m}};
-    if (output.in_the_way) {
-      numbers.emplace_back("x_m", output.in_the_way->x());
-      numbers.emplace_back("y_m", output.in_the_way->y());
+    if (output.obstacle_ahead) {
+      numbers.emplace_back("x_m", output.obstacle_ahead->x());
+      numbers.emplace_back("y_m", output.obstacle_ahead->y());
     }
     tell("evade", numbers);
   } else if (output.status == PilotStatus::driving && evading_) {
@@ -34,7 +34,7 @@ void Loop::tell_pilot(const pilot::PilotOutput& output) {
 /// The path stays blocked: another one is planned round what blocks it. Without any, the robot
 /// waits and tries again.
 void Loop::go_round(const pilot::PilotOutput& output) {
-  const Eigen::Vector2d where = output.in_the_way.value_or(belief().pose.position());
+  const Eigen::Vector2d where = output.obstacle_ahead.value_or(belief().pose.position());
   tell("blocked", {{"x_m", where.x()}, {"y_m", where.y()}, {"for_s", pilot_.stalled_s()}});
   if (pilot_.stalled_s() >= setup_.pilot.avoidance.give_up_s) {
     tell("stuck", {}, {{"reason", "the path stays blocked and there is no way round"}});

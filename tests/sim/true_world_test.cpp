@@ -12,9 +12,8 @@ namespace {
 constexpr double kWorldSigmas = 4.5;
 
 RobotSetup robot_of_world() {
-  RobotSetup setup;
-  setup.zoom = ZoomCalibration(640, 480, 319.5, 239.5, {{8, 582, 0.06}, {48, 3490, 0.002}});
-  return setup;
+  return pan_tilt_zoom_robot(
+      usual_robot(), ZoomCalibration(640, 480, 319.5, 239.5, {{8, 582, 0.06}, {48, 3490, 0.002}}));
 }
 
 Simulator simulator(const DisturbanceParams& disturbances, std::uint64_t seed) {

@@ -18,6 +18,10 @@
 #include "vigia/servo/gaze_controller.hpp"
 #include "vigia/sim/simulator.hpp"
 
+namespace vigia {
+struct KeyRow;
+}
+
 namespace vigia::mission {
 
 /// When and how the robot looks.
@@ -56,10 +60,10 @@ struct MissionSetup {
   sim::RobotSetup robot;
   sim::DisturbanceParams disturbances;  ///< of the world, which nobody but the simulator knows
 
-  Pose2 start;                 ///< true start
-  Prior prior;                 ///< what the localizers are told of it
-  double start_sigma_m = 0.0;  ///< the true start is drawn round `start` with these
-  double start_sigma_rad = 0.0;
+  Pose2 start;                  ///< true start
+  Prior prior;                  ///< what the localizers are told of it
+  double start_sigma_m = 0.01;  ///< the true start is drawn round `start` with these
+  double start_sigma_rad = from_deg(0.2);
 
   std::vector<Eigen::Vector2d> waypoints;  ///< start, vias, goal
   planner::RouteParams route;
@@ -86,6 +90,9 @@ struct MissionSetup {
   /// What places the robot's cameras in the world, as the robot knows it.
   RigOnGround on_ground() const { return {robot.rig(), world.ground}; }
 };
+
+/// The reference of a mission's keys, with those of its world and robot.
+std::vector<KeyRow> mission_keys();
 
 /// Reads and validates a mission file with command-line overrides ("key.path=value"), and plans its
 /// route. Throws InputError: anything wrong in the files, a start in an obstacle, no route, ….

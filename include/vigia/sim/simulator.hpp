@@ -16,6 +16,9 @@
 
 namespace vigia::sim {
 
+/// What a robot's file may leave out.
+RobotParams usual_robot();
+
 /// A camera of the robot, and how it turns light into grey levels.
 struct CameraSetup {
   Camera camera;  ///< what the robot believes; the errors of its calibration on top are the truth
@@ -24,8 +27,8 @@ struct CameraSetup {
 
 /// Everything that a mission's file says of its robot: the base, the head and the cameras.
 struct RobotSetup {
-  std::string name;
-  RobotParams robot;
+  std::string name = "robot";
+  RobotParams robot = usual_robot();
   std::vector<CameraSetup> cameras{CameraSetup{}};  ///< at least one; one zoom at most
   double initial_zoom_mm = 8.0;
   std::optional<RangeRingParams> range_ring;
@@ -41,9 +44,9 @@ struct RobotSetup {
 RobotSetup pan_tilt_zoom_robot(const RobotParams& robot, const ZoomCalibration& zoom,
                                const ImagingParams& imaging = {});
 
-/// Reads a robot file: keys `name`, `base`, `head`, `odometry`, `sensor`, `range_ring`, and either
-/// `cameras` or, of a robot with one pan-tilt-zoom camera, `zoom` and `camera`. Throws InputError
-/// with the place of what is wrong.
+/// Reads a robot file, whose cameras stand in the list `cameras` or, of a robot with one
+/// pan-tilt-zoom camera, in `camera` and `zoom`; the reader stays the caller's to finish. Throws
+/// InputError with the place of what is wrong.
 RobotSetup read_robot_setup(MapReader& reader);
 
 /// The simulated world with the robot in it: the room as it truly is, which the disturbances make
