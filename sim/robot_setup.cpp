@@ -54,9 +54,9 @@ void describe_head(ParamVisitor& v, RobotParams& robot, bool listed) {
   v.where(!listed, "without `cameras`", [&] { describe_offset(v, robot.head.camera_offset_h); });
   HeadLimits& limits = robot.head_limits;
   describe_range(v, "pan_range_deg", 180.0, limits.pan_min, limits.pan_max,
-                 "least and greatest pan");
+                 "from the smallest to the largest pan");
   describe_range(v, "tilt_range_deg", 90.0, limits.tilt_min, limits.tilt_max,
-                 "least and greatest tilt");
+                 "from the smallest to the largest tilt");
   v.angle("rate_deg_s", limits.rate, {0.1, 3600.0}, "of pan and of tilt, at most");
   v.angle("acceleration_deg_s2", limits.acceleration, {0.1, 100000.0},
           "of pan and of tilt, at most");
@@ -214,7 +214,7 @@ void describe_listed(ParamVisitor& v, RobotSetup& setup) {
   CameraSetup item;
   item.camera.id = static_cast<CameraId>(setup.cameras.size());
   v.integer("id", item.camera.id, {0, 1000},
-            About("tells the cameras apart").otherwise("its place in the list, from 0"));
+            About("names the camera").otherwise("its place in the list, from 0"));
   const auto same_id = [&](const CameraSetup& other) { return other.camera.id == item.camera.id; };
   v.require(std::none_of(setup.cameras.begin(), setup.cameras.end(), same_id), "id",
             "another camera has this id");

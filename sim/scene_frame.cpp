@@ -13,9 +13,9 @@ Run row_run(const Window& window, int v) {
 }
 
 int longest(const std::vector<Run>& runs) {
-  int most = 0;
-  for (const Run& run : runs) most = std::max(most, run.width());
-  return most;
+  int longest_run = 0;
+  for (const Run& run : runs) longest_run = std::max(longest_run, run.width());
+  return longest_run;
 }
 
 }  // namespace

@@ -25,27 +25,27 @@ std::shared_ptr<const Appearance> appearance_of(const std::shared_ptr<const Appe
       true_appearance(given ? *given : Appearance{}, world, disturbances, seed));
 }
 
-/// How far the picture moves between two poses of the camera, px: the most of its middle and its
+/// How far the picture moves between two poses of the camera, px: the largest of its middle and its
 /// corners, of points at kNear_m and of points far away.
 double motion_px(const Eigen::Isometry3d& aMb, const Intrinsics& k) {
-  double most = 0.0;
+  double largest = 0.0;
   for (const double u : {0.0, 0.5, 1.0}) {
     for (const double v : {0.0, 0.5, 1.0}) {
       const Eigen::Vector3d ray((u * k.width - k.u0) / k.px, (v * k.height - k.v0) / k.py, 1.0);
       for (const double near : {1.0, 0.0}) {
         const Eigen::Vector3d p = aMb.linear() * ray + near / kNear_m * aMb.translation();
         if (p.z() <= 0.1) return std::numeric_limits<double>::infinity();
-        most = std::max(most, k.px * (p.head<2>() / p.z() - ray.head<2>()).norm());
+        largest = std::max(largest, k.px * (p.head<2>() / p.z() - ray.head<2>()).norm());
       }
     }
   }
-  return most;
+  return largest;
 }
 
 /// The same, of directions all round that the mirror shows from both poses.
 double motion_px(const Eigen::Isometry3d& aMb, const UnifiedOmni& omni) {
   const CameraModel model = omni;
-  double most = 0.0;
+  double largest = 0.0;
   for (const double off_axis : {0.3, 0.6, 0.9}) {
     for (int i = 0; i < 8; ++i) {
       const double angle = off_axis * omni.max_angle;
@@ -56,11 +56,11 @@ double motion_px(const Eigen::Isometry3d& aMb, const UnifiedOmni& omni) {
       for (const double near : {1.0, 0.0}) {
         const auto to = project(
             model, Eigen::Vector3d(aMb.linear() * ray + near / kNear_m * aMb.translation()));
-        if (from && to) most = std::max(most, (*to - *from).norm());
+        if (from && to) largest = std::max(largest, (*to - *from).norm());
       }
     }
   }
-  return most;
+  return largest;
 }
 
 std::int64_t floor_divide(std::int64_t a, std::int64_t b) {

@@ -51,17 +51,17 @@ double area(const CutPixel& pixel) {
 /// Share of a pixel inside all sides, from the four corners of its square.
 double share_inside(const Eigen::Vector4d& a, const Eigen::Vector4d& b, const Eigen::Vector4d& c,
                     const Eigen::Vector4d& d) {
-  const Eigen::Vector4d least = a.cwiseMin(b).cwiseMin(c).cwiseMin(d);
-  if ((least.array() >= 0.0).all()) return 1.0;
-  const Eigen::Vector4d greatest = a.cwiseMax(b).cwiseMax(c).cwiseMax(d);
-  if ((greatest.array() <= 0.0).any()) return 0.0;
+  const Eigen::Vector4d low = a.cwiseMin(b).cwiseMin(c).cwiseMin(d);
+  if ((low.array() >= 0.0).all()) return 1.0;
+  const Eigen::Vector4d high = a.cwiseMax(b).cwiseMax(c).cwiseMax(d);
+  if ((high.array() <= 0.0).any()) return 0.0;
   CutPixel pixel;
   pixel.add({{0.0, 0.0}, a});
   pixel.add({{1.0, 0.0}, b});
   pixel.add({{1.0, 1.0}, c});
   pixel.add({{0.0, 1.0}, d});
   for (int side = 0; side < 4; ++side)
-    if (least[side] < 0.0) pixel = cut(pixel, side);
+    if (low[side] < 0.0) pixel = cut(pixel, side);
   return area(pixel);
 }
 

@@ -8,6 +8,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "vigia/imaging/frame.hpp"
+
 namespace vigia::sim {
 
 /// A straight line painted on a surface, in frame d: x along it, z the surface's outward normal.

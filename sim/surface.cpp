@@ -331,7 +331,7 @@ bool make_view(const Surface& surface, const Eigen::Isometry3d& cMw, double foca
 
   const std::size_t n = surface.corners_w.size();
   view.edge_count = static_cast<int>(n);
-  view.edges.fill({0.0F, 0.0F, 1.0F});
+  view.edges.fill({});  // every ray is inside an edge that is not there
   std::array<Eigen::Vector3d, 4> corners_c;
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < n; ++i) {

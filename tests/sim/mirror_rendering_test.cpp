@@ -20,9 +20,9 @@ UnifiedOmni mirror() {
   return model;
 }
 
-/// A mirror at 1 m height that looks down.
-Eigen::Isometry3d mirror_pose_in_room(double x, double y) {
-  Eigen::Isometry3d wMc(Eigen::Translation3d(x, y, 1.0));
+/// A mirror that looks down.
+Eigen::Isometry3d mirror_pose_in_room(double x, double y, double height = 1.0) {
+  Eigen::Isometry3d wMc(Eigen::Translation3d(x, y, height));
   wMc.linear() = Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal();
   return wMc;
 }
@@ -71,7 +71,7 @@ TEST(MirrorRendering, ADiscLiesWhereTheModelProjectsIt) {
                     3);
   const CameraModel model = mirror();
   for (const auto& [x, y] : {std::pair{10.5, 3.4}, {10.8, 2.2}, {11.0, 3.0}}) {
-    const Eigen::Isometry3d wMc = mirror_pose_in_room(x, y);
+    const Eigen::Isometry3d wMc = mirror_pose_in_room(x, y, 1.65);
     const auto image = imaging::grey_image(*scene.expose(wMc, model, {}, without_noise()));
     // The centroid of the dense projection of the disc's points, by solid angle in the image.
     const Eigen::Isometry3d cMl = wMc.inverse() * world.landmarks.find(0)->wMl;

@@ -139,7 +139,7 @@ TEST(Scene, CamerasThatExposeAtOnceHaveNoiseOfTheirOwn) {
   ImagingParams clean;
   clean.noise_sigma = 0.0;
   const auto truth = imaging::grey_image(*scene.expose(view.wMc, view.intrinsics, {40}, clean));
-  const auto left = of_camera(0);
+  auto left = of_camera(0);
   const auto right = of_camera(1);
   EXPECT_TRUE(left == imaging::grey_image(*scene.expose(view.wMc, view.intrinsics, {40}, {})));
   double product = 0.0;

@@ -65,7 +65,7 @@ TEST(TrueWorld, WithoutDisturbancesItIsTheMapAndTheSamePixels) {
     EXPECT_EQ(world.true_world().landmarks.find(landmark.id)->wMl.matrix(), landmark.wMl.matrix());
   const Scene plain(map, nullptr, derive_seed(3, "scene"));
   const auto direct =
-      plain.expose(world.robot().camera_pose(), robot_of_world().zoom.at(8), {}, {});
+      plain.expose(world.robot().camera_pose(), robot_of_world().zoom().at(8), {}, {});
   EXPECT_TRUE(imaging::grey_image(*world.expose()) == imaging::grey_image(*direct));
   EXPECT_EQ(world.latency().ns, 0);
 }

@@ -57,7 +57,7 @@ struct WheelSlipParams {
   double per_m = 0.15;  ///< slips that begin per metre driven
   double min_m = 0.1;   ///< length of a slip
   double max_m = 0.4;
-  double min_loss = 0.02;  ///< share of the way that is lost during a slip
+  double min_loss = 0.02;  ///< share of the distance that is lost during a slip
   double max_loss = 0.10;
   double skew_per_m = from_deg(3.0);  ///< σ of the turn during a slip, rad per metre
   double diameter = 0.005;            ///< σ of the relative error of the wheels' diameter
