@@ -168,8 +168,7 @@ double GazeController::wanted_focal(const GazeInput& input, const Landmark& land
   const double lever = across.dot(Eigen::Vector2d(-p_r.y(), p_r.x()));
   const Eigen::RowVector3d bearing(-across_w.x(), -across_w.y(), -lever);
   const double variance = (bearing * input.belief.covariance * bearing.transpose()).value();
-  const double sigma =
-      std::hypot(std::sqrt(std::max(variance, 0.0)), from_deg(params_.look_angle_deg));
+  const double sigma = std::hypot(std::sqrt(std::max(variance, 0.0)), params_.look_angle);
 
   const double planned = active().zoom_mm ? zoom_.at(*active().zoom_mm).px : 0.0;
   const double wanted_px = held_radius(planned * radius / range, input.intrinsics);

@@ -27,8 +27,9 @@ void describe(ParamVisitor& v, GazeParams& p) {
            "apparent radius down to which the zoom widens while searching");
   v.number("motion_horizon_s", p.motion_horizon_s, {0.0, 60.0},
            "how far ahead the base's motion is foreseen");
-  v.number("look_angle_deg", p.look_angle_deg, {0.0, 10.0},
-           "σ of the head, for the zoom at which the landmark is still in the image");
+  v.angle("look_angle_deg", p.look_angle, {0.0, 10.0},
+          About("σ of the head, for the zoom at which the landmark is still in the image")
+              .otherwise("that of `localization.noise`"));
   v.number("aim_gain", p.aim_gain, {0.1, 50.0}, About("of a slew's end").in("1/s"));
 }
 

@@ -13,6 +13,9 @@ void describe(ParamVisitor& v, MotionBlurParams& p) {
 
 void describe(ParamVisitor& v, LatencyParams& p) {
   v.number("latency_s", p.latency_s, {0.0, 10.0}, "from the middle of the exposure");
+  v.number(
+      "processing_s", p.processing_s, {0.0, 10.0},
+      "that a frame takes once it has arrived; the newest of those that arrive meanwhile is next");
 }
 
 void describe(ParamVisitor& v, LightParams& p) {
@@ -94,7 +97,7 @@ void describe(ParamVisitor& v, DisturbanceParams& p) {
   const bool on = all == All::realistic;
   v.toggle("motion_blur", p.motion_blur, on,
            "a frame is the mean over the camera's motion while the shutter is open");
-  v.toggle("latency", p.latency, on, "a frame arrives late");
+  v.toggle("latency", p.latency, on, "a frame arrives late, and takes time to process");
   v.toggle("light", p.light, on, "the light's gain varies over the room and in time");
   v.toggle("mounting", p.mounting, on, "the head sits a little askew on the base");
   v.toggle("zoom_calibration", p.zoom_calibration, on,

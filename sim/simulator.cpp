@@ -63,10 +63,6 @@ double motion_px(const Eigen::Isometry3d& aMb, const UnifiedOmni& omni) {
   return largest;
 }
 
-std::int64_t floor_divide(std::int64_t a, std::int64_t b) {
-  return a / b - (a % b < 0 ? 1 : 0);
-}
-
 }  // namespace
 
 Simulator::Simulator(const RobotSetup& setup, const WorldMap& world,
@@ -97,11 +93,13 @@ void Simulator::disturb(const DisturbanceParams& disturbances, std::uint64_t see
   if (disturbances.light) light_.emplace(*disturbances.light, world_.plan, seed);
   if (disturbances.people) walkers_.emplace(*disturbances.people, world_.plan, bystander(), seed);
   if (disturbances.kidnapping) kidnapping_.emplace(*disturbances.kidnapping, seed);
-  if (disturbances.latency) latency_ = Duration::from_seconds(disturbances.latency->latency_s);
+  if (disturbances.latency) {
+    latency_ = Duration::from_seconds(disturbances.latency->latency_s);
+    processing_ = Duration::from_seconds(disturbances.latency->processing_s);
+  }
 }
 
 void Simulator::advance(Duration dt) {
-  last_tick_ = robot_.truth().stamp;
   robot_.advance(dt);
   if (walkers_) walkers_->advance(dt.seconds(), bystander());
 }
@@ -170,28 +168,12 @@ std::vector<Exposure::Instant> Simulator::instants(const TrueCamera& camera,
   return instants;
 }
 
-bool Simulator::exposes(CameraId camera) const {
-  const Camera& known = camera_of(camera).setup.camera;
-  const std::int64_t period = Duration::from_seconds(known.period_s).ns;
-  if (period <= 0) return true;
-  const Stamp phase = Stamp::from_seconds(known.phase_s);
-  const auto exposures_by = [&](Stamp stamp) {
-    return std::max<std::int64_t>(0, 1 + floor_divide((stamp - phase).ns, period));
-  };
-  return exposures_by(robot_.truth().stamp) > exposures_by(last_tick_);
-}
-
 std::unique_ptr<imaging::Frame> Simulator::expose(CameraId camera) const {
   const TrueCamera& truth = camera_of(camera);
   const CameraModel model = true_model(camera);
   Exposure exposure{instants(truth, model), std::nullopt};
   if (light_) exposure.light = light_->at(robot_.truth().stamp);
   return scene_.expose(exposure, model, robot_.truth().stamp, truth.setup.imaging, camera);
-}
-
-Duration Simulator::latency(CameraId camera) const {
-  return Duration{latency_.ns +
-                  Duration::from_seconds(camera_of(camera).setup.camera.latency_s).ns};
 }
 
 RangeScan Simulator::scan() {

@@ -15,6 +15,7 @@
 #include "vigia/evaluation/campaign.hpp"
 #include "vigia/evaluation/text_table.hpp"
 #include "vigia/mission/localizers.hpp"
+#include "vigia/perception/eye.hpp"
 #include "vigia/planner/look_policy.hpp"
 #include "vigia/tracking/trackers.hpp"
 
@@ -106,6 +107,8 @@ void print_keys(const HelpOptions& options) {
   TextRows rows{{"key", "default", "values", "meaning"}};
   for (const KeyRow& row : keys) {
     const std::string rest = rest_of(row.key, options.prefix);
+    // Below its heading in a page a map needs no row of its own.
+    if (markdown && rest.empty() && keys.size() > 1) continue;
     rows.push_back({markdown ? "`" + (rest.empty() ? row.key : rest) + "`" : row.key, usual_of(row),
                     values_of(row), meaning_of(row)});
   }
@@ -143,6 +146,8 @@ const std::vector<Topic>& topics() {
        [](const HelpOptions& options) { print_names(mission::localizers(), options.form()); }},
       {"trackers", "who may find landmarks in a picture",
        [](const HelpOptions& options) { print_names(tracking::trackers(), options.form()); }},
+      {"eyes", "who may turn a camera's pictures into observations",
+       [](const HelpOptions& options) { print_names(perception::eyes(), options.form()); }},
       {"policies", "who may choose the next landmark",
        [](const HelpOptions& options) { print_names(planner::look_policies(), options.form()); }},
   };
@@ -182,8 +187,10 @@ void help(const CLI::App& app, const HelpOptions& options) {
 void add_help(CLI::App& app, int& status) {
   auto options = std::make_shared<HelpOptions>();
   CLI::App* command = app.add_subcommand(
-      "help", "Explain a command, the keys of the YAML files, localizers, trackers, policies");
-  command->add_option("topic", options->topic, "A command, keys, localizers, trackers or policies");
+      "help",
+      "Explain a command, the keys of the YAML files, localizers, trackers, eyes, policies");
+  command->add_option("topic", options->topic,
+                      "A command, keys, localizers, trackers, eyes or policies");
   command->add_option("prefix", options->prefix, "Of the keys, e.g. planner.fuzzy");
   command->add_flag("--flat", options->flat, "Not the keys of the maps below the prefix");
   command->add_flag("--json", options->json, "Print as JSON");

@@ -20,4 +20,13 @@ void describe(ParamVisitor& v, SensorNoise& p) {
            "relative σ of the focal length, constant during a look");
 }
 
+void describe(ParamVisitor& v, NoiseModel& p) {
+  v.map("odometry", p.odometry, About("of the odometry").otherwise("the robot's"));
+  v.map("sensor", p.sensor, About("of the head and the zoom").otherwise("the robot's"));
+  v.number("centre_floor_px", p.centre_floor_px, {0.0, 10.0},
+           "σ of what the model of a disc's centre, or of a point, leaves out");
+  v.number("size_floor", p.size_floor, {0.0, 1.0},
+           "relative σ of what the model of a disc's size leaves out");
+}
+
 }  // namespace vigia

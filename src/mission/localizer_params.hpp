@@ -1,7 +1,11 @@
 #pragma once
 
+#include <memory>
+#include <string>
+
+#include "vigia/localization/landmark_information.hpp"
+#include "vigia/localization/localizer.hpp"
 #include "vigia/localization/pattern_fix.hpp"
-#include "vigia/localization/points_information.hpp"
 #include "vigia/localization/relocalizer.hpp"
 #include "vigia/mission/setup.hpp"
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "vigia/core/key_reference.hpp"
+#include "vigia/core/noise_params.hpp"
 #include "vigia/localization/params.hpp"
 #include "vigia/mission/localizers.hpp"
 #include "vigia/pilot/params.hpp"
@@ -31,18 +32,22 @@ void describe_start(ParamVisitor& v, MissionSetup& setup) {
   double heading = 0.0;
   v.vector("position_m", position, kMetres,
            About("where the localizers are told the robot is").required());
-  v.angle("heading_deg", heading, {-360.0, 360.0},
-          About("which way they are told it looks").required());
+  v.angle("heading_deg", heading, {-360.0, 360.0}, About("which heading they are told").required());
   v.number("sigma_m", setup.start_sigma_m, {0.0, 5.0},
            "the true position is drawn round it with this, each coordinate; the prior says so");
   v.angle("sigma_deg", setup.start_sigma_rad, {0.0, 180.0},
           "the true heading is drawn round it with this; the prior says so");
   setup.start = {position.x(), position.y(), wrap_angle(heading)};
-  setup.prior.pose = setup.start;
-  const double variance = setup.start_sigma_m * setup.start_sigma_m;
-  setup.prior.covariance =
-      Eigen::Vector3d(variance, variance, setup.start_sigma_rad * setup.start_sigma_rad)
-          .asDiagonal();
+  bool told = true;
+  v.boolean(
+      "prior", told,
+      "whether the localizers are told where the drive begins; `false`: they find themselves");
+  if (told) {
+    const double variance = setup.start_sigma_m * setup.start_sigma_m;
+    const Eigen::Vector3d variances(variance, variance,
+                                    setup.start_sigma_rad * setup.start_sigma_rad);
+    setup.prior = Prior{setup.start, variances.asDiagonal()};
+  }
   if (v.reader() == nullptr) return;
   const double radius_m = setup.robot.robot.radius_m;
   v.require(setup.world.plan.clearance(position) >= radius_m, "position_m",
@@ -103,6 +108,10 @@ void require_fit(ParamVisitor& v, const char* key, const MissionSetup& setup) {
   for (const std::string& name : setup.localizers) {
     const LocalizerEntry& entry = *find_name(localizers(), name);
     v.require(entry.fits(setup), key, "'" + name + "' needs " + entry.needs);
+    v.require(setup.prior || !needs_prior(entry, setup), key,
+              "'" + name +
+                  "' cannot start without a prior (start.prior: false); leave it out, or let it be "
+                  "the primary where the recovery can find it");
   }
 }
 
@@ -128,9 +137,18 @@ void describe_localizers(ParamVisitor& v, MissionSetup& setup) {
 void describe_localization(ParamVisitor& v, MissionSetup& setup) {
   describe_localizers(v, setup);
   // Matched to the robot unless the mission says otherwise.
-  setup.ekf.odometry = setup.robot.robot.odometry;
-  setup.ekf.sensor = setup.robot.robot.sensor;
+  setup.noise.odometry = setup.robot.robot.odometry;
+  setup.noise.sensor = setup.robot.robot.sensor;
+  v.map("noise", setup.noise,
+        "what the robot believes of its sensors' errors; a localizer's own keys override it");
+  setup.ekf.odometry = setup.noise.odometry;
+  setup.ekf.sensor = setup.noise.sensor;
+  setup.ekf.centre_floor_px = setup.noise.centre_floor_px;
+  setup.ekf.size_floor = setup.noise.size_floor;
   v.map("ekf", setup.ekf, "the extended Kalman filter");
+  setup.bearing_only.odometry = setup.noise.odometry;
+  setup.bearing_only.sensor = setup.noise.sensor;
+  v.map("bearing_only", setup.bearing_only, "the localizer that learns from bearings alone");
 }
 
 /// Landmarks are looked at with pan, tilt and zoom; patterns are told apart by their colours.
@@ -200,6 +218,7 @@ void describe(ParamVisitor& v, MissionSetup& setup) {
   v.map("localization", "who estimates the pose", [&] { describe_localization(v, setup); });
   v.map("planner", "when and where the robot looks", [&] { describe_planner(v, setup); });
   require_camera(v, setup);
+  setup.gaze.look_angle = setup.noise.sensor.look_angle;
   v.map("gaze", setup.gaze, "how head and zoom follow an order");
   v.map("pilot", "how the base follows the route", [&] { describe_pilot(v, setup); });
   v.map("recovery", setup.recovery, "what a lost robot does");

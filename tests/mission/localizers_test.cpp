@@ -8,9 +8,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "vigia/core/error.hpp"
+
 namespace vigia::mission {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -32,6 +35,39 @@ TEST(Localizers, AMissionHasThoseThatItNames) {
   const auto setup = load("armingol-room", {"localization.localizers=[odometry]"});
   EXPECT_THAT(setup.localizers, ElementsAre("odometry"));
   EXPECT_EQ(setup.primary, "odometry");
+}
+
+std::string refusal(const std::vector<std::string>& overrides) {
+  try {
+    load("armingol-room", overrides);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Localizers, WithoutAPriorThoseThatCannotStartAreLeftOutOrRefusedByName) {
+  const auto setup = load("armingol-room", {"start.prior=false"});
+  EXPECT_FALSE(setup.prior);
+  EXPECT_THAT(setup.localizers, ElementsAre("ekf"));
+  EXPECT_THAT(refusal({"start.prior=false", "localization.localizers=[ekf, odometry]"}),
+              AllOf(HasSubstr("'odometry' cannot start without a prior"), HasSubstr("localizers")));
+  EXPECT_THAT(refusal({"start.prior=false", "localization.localizers=[bearing_only, ekf]",
+                       "localization.primary=bearing_only"}),
+              HasSubstr("'ekf' cannot start without a prior"));
+  EXPECT_EQ(refusal({"start.prior=false", "localization.localizers=[ekf, bearing_only]"}), "");
+}
+
+TEST(Localizers, AllTakeTheirNoiseFromTheOneModelUnlessTheirOwnKeysOverrideIt) {
+  const auto setup = load("armingol-room", {"localization.noise.sensor.look_angle_deg=0.6",
+                                            "localization.noise.centre_floor_px=0.03",
+                                            "localization.ekf.sensor.look_angle_deg=0.1"});
+  EXPECT_NEAR(setup.noise.sensor.look_angle, from_deg(0.6), 1e-12);
+  EXPECT_NEAR(setup.ekf.sensor.look_angle, from_deg(0.1), 1e-12);
+  EXPECT_NEAR(setup.ekf.centre_floor_px, 0.03, 1e-12);
+  EXPECT_NEAR(setup.bearing_only.sensor.look_angle, from_deg(0.6), 1e-12);
+  EXPECT_NEAR(setup.gaze.look_angle, from_deg(0.6), 1e-12);
+  EXPECT_NEAR(load("armingol-room", {"gaze.look_angle_deg=1"}).gaze.look_angle, from_deg(1), 1e-12);
 }
 
 TEST(Localizers, TheResolvedMissionNamesThem) {

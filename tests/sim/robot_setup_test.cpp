@@ -157,25 +157,11 @@ TEST(RobotSetup, ABaseMayGoSideways) {
               HasSubstr("side_speed_mps"));
 }
 
-TEST(Simulator, ExposesEveryCameraAtTimesOfItsOwn) {
+TEST(Simulator, ExposesAnyCameraOfTheRig) {
   const RobotSetup setup = setup_from(kStereo);
   const WorldMap world = test_room();
   Simulator simulator(setup, world, appearance_of(world, ""), {2, 3, 0}, 9);
-  std::vector<int> left;
-  std::vector<int> right;
-  int mirror = 0;
-  for (int tick = 1; tick <= 10; ++tick) {
-    simulator.advance(Duration::from_seconds(0.04));
-    if (simulator.exposes(0)) left.push_back(tick);
-    if (simulator.exposes(7)) right.push_back(tick);
-    if (simulator.exposes(3)) ++mirror;
-  }
-  // 0, 100, 200, … ms and 60, 160, 260, … ms on ticks of 40 ms; time 0 was before the first tick.
-  EXPECT_THAT(left, testing::ElementsAre(3, 5, 8, 10));
-  EXPECT_THAT(right, testing::ElementsAre(2, 4, 7, 9));
-  EXPECT_EQ(mirror, 10);
-  EXPECT_EQ(simulator.latency(7).ns, Duration::from_seconds(0.05).ns);
-  EXPECT_EQ(simulator.latency(0).ns, 0);
+  simulator.advance(Duration::from_seconds(0.04));
   EXPECT_EQ(simulator.expose(3)->width(), 640);
   EXPECT_FALSE(imaging::grey_image(*simulator.expose(0)) ==
                imaging::grey_image(*simulator.expose(7)));

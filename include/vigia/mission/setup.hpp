@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "vigia/core/belief.hpp"
+#include "vigia/core/noise_model.hpp"
 #include "vigia/core/world_map.hpp"
+#include "vigia/localization/bearing_only.hpp"
 #include "vigia/localization/ekf.hpp"
 #include "vigia/pilot/pilot_params.hpp"
 #include "vigia/planner/look_trigger.hpp"
@@ -61,7 +63,7 @@ struct MissionSetup {
   sim::DisturbanceParams disturbances;  ///< of the world, which nobody but the simulator knows
 
   Pose2 start;                  ///< true start
-  Prior prior;                  ///< what the localizers are told of it
+  std::optional<Prior> prior;   ///< what the localizers are told of it, if anything
   double start_sigma_m = 0.01;  ///< the true start is drawn round `start` with these
   double start_sigma_rad = from_deg(0.2);
 
@@ -76,7 +78,9 @@ struct MissionSetup {
   std::string tracker = "disc";
   std::vector<std::string> localizers;
   std::string primary = "ekf";
+  NoiseModel noise;  ///< what the robot believes of its sensors
   localization::EkfParams ekf;
+  localization::BearingOnlyParams bearing_only;
   LookParams look;
   servo::GazeParams gaze;
   pilot::PilotParams pilot;

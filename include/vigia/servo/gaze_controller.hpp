@@ -29,11 +29,8 @@ struct GazeParams {
   double planned_min_px = 8.0;     ///< a planned zoom stays while the landmark is this large …
   double planned_max = 0.5;        ///< … and at most this part of half the image's smaller side
   /// σ of the head's angles, for the zoom at which the landmark is still inside the image.
-  double look_angle_deg = 0.3;
+  double look_angle = from_deg(0.3);
 };
-
-/// What the tracker is asked to do with the next frame.
-enum class TrackRequest { none, acquire, track };
 
 /// The tracker's answer to the last request, in pixels.
 struct GazeSighting {

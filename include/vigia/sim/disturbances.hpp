@@ -15,9 +15,11 @@ struct MotionBlurParams {
   int max_instants = 16;  ///< of which the mean is taken, at most
 };
 
-/// A frame is delivered late.
+/// A frame is delivered late, and what is seen in it is known later still.
 struct LatencyParams {
   double latency_s = 0.08;  ///< from the middle of the exposure
+  double processing_s =
+      0.0;  ///< that a frame takes; one that arrives meanwhile waits, or is dropped
 };
 
 /// The light's gain varies over the room and in time.

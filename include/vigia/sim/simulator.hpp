@@ -68,16 +68,15 @@ class Simulator {
   /// Puts the robot elsewhere when the time has come, once; says whether it did.
   bool kidnap();
 
-  /// Whether the camera exposes at the tick that has just passed: its first exposure is at phase_s,
-  /// one follows every period_s, each in the tick in which its time falls.
-  bool exposes(CameraId camera) const;
   /// The exposure of a camera whose middle is now.
   std::unique_ptr<imaging::Frame> expose(CameraId camera = 0) const;
   /// A camera's true model now: calibrated, at the zoom's position, scaled by the look's focal
   /// error, with the errors of the calibration.
   CameraModel true_model(CameraId camera = 0) const;
-  /// How late a camera's frames are delivered.
-  Duration latency(CameraId camera = 0) const;
+  /// How late frames are delivered, beside the cameras' own latency.
+  Duration latency() const { return latency_; }
+  /// How long a delivered frame takes to process.
+  Duration processing() const { return processing_; }
   /// Distance from the robot's hull to the nearest true face or person, m; negative: collided.
   double clearance() const;
   /// The same of people alone; infinite without any.
@@ -102,13 +101,13 @@ class Simulator {
   Robot robot_;
   Scene scene_;
   std::vector<TrueCamera> cameras_;
-  Stamp last_tick_;  ///< before the present one
   std::optional<MotionBlurParams> motion_blur_;
   std::optional<LightField> light_;
   std::optional<Walkers> walkers_;
   std::optional<RangeRing> ring_;
   std::optional<Kidnapping> kidnapping_;
-  Duration latency_;  ///< beside the cameras' own
+  Duration latency_;
+  Duration processing_;
 };
 
 }  // namespace vigia::sim
