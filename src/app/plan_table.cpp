@@ -100,7 +100,7 @@ PlanTable make_plan(const mission::MissionSetup& setup, const std::string& polic
   const auto& robot = setup.robot.robot;
   const planner::Visibility visibility(setup.world.plan, robot.head, robot.head_limits,
                                        setup.look.visibility, setup.world.ground);
-  const planner::HeadModel head{robot.head,           robot.head_limits,  setup.robot.zoom,
+  const planner::HeadModel head{robot.head,           robot.head_limits,  setup.robot.zoom(),
                                 setup.look.radius_px, setup.look.dwell_s, setup.look.fill,
                                 setup.world.ground};
   planner::FuzzySupervisors supervisors(setup.look.rules);

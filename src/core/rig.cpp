@@ -26,8 +26,12 @@ CameraModel focused(const CameraModel& optics, double /*zoom_mm*/) {
 
 }  // namespace
 
-Eigen::Isometry3d Camera::rMc(const HeadAngles& head) const {
+Eigen::Isometry3d mounted_camera(const CameraMount& mount, const HeadAngles& head) {
   return std::visit([&](const auto& on) { return placed(on, head); }, mount);
+}
+
+Eigen::Isometry3d Camera::rMc(const HeadAngles& head) const {
+  return mounted_camera(mount, head);
 }
 
 CameraModel Camera::model(double zoom_mm) const {

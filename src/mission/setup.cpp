@@ -151,14 +151,18 @@ void describe_localization(ParamVisitor& v, MissionSetup& setup) {
   v.map("bearing_only", setup.bearing_only, "the localizer that learns from bearings alone");
 }
 
-/// Patterns are told apart by their colours.
-void require_colour(ParamVisitor& v, const MissionSetup& setup) {
+/// Landmarks are looked at with pan, tilt and zoom; patterns are told apart by their colours.
+void require_camera(ParamVisitor& v, const MissionSetup& setup) {
   const auto& landmarks = setup.world.landmarks.all();
   const bool patterns =
       std::any_of(landmarks.begin(), landmarks.end(), [](const Landmark& landmark) {
         return std::holds_alternative<PatternShape>(landmark.shape);
       });
-  v.require(setup.robot.imaging.colour || !patterns, "robot",
+  const sim::CameraSetup* camera = setup.robot.pan_tilt_zoom();
+  v.require(
+      camera != nullptr, "robot",
+      "the mission looks with a pan-tilt-zoom camera: one with `mount: head` and `optics: zoom`");
+  v.require(camera->imaging.colour || !patterns, "robot",
             "the world has colour patterns, but the robot's camera sees grey: it needs "
             "camera.colour: true");
 }
@@ -213,7 +217,7 @@ void describe(ParamVisitor& v, MissionSetup& setup) {
          "of discs; `vigia help trackers` tells them apart");
   v.map("localization", "who estimates the pose", [&] { describe_localization(v, setup); });
   v.map("planner", "when and where the robot looks", [&] { describe_planner(v, setup); });
-  require_colour(v, setup);
+  require_camera(v, setup);
   setup.gaze.look_angle = setup.noise.sensor.look_angle;
   v.map("gaze", setup.gaze, "how head and zoom follow an order");
   v.map("pilot", "how the base follows the route", [&] { describe_pilot(v, setup); });

@@ -17,13 +17,19 @@ struct FixedMount {
   Eigen::Isometry3d rMc = Eigen::Isometry3d::Identity();
 };
 
+/// Turned by the head, or fixed to the base.
+using CameraMount = std::variant<HeadGeometry, FixedMount>;
+
+/// rMc of a camera so mounted when the head stands at @p head.
+Eigen::Isometry3d mounted_camera(const CameraMount& mount, const HeadAngles& head);
+
 /// A motorised zoom, or optics that do not change.
 using Optics = std::variant<ZoomCalibration, CameraModel>;
 
 /// One camera of a robot, as the robot knows it.
 struct Camera {
   CameraId id = 0;
-  std::variant<HeadGeometry, FixedMount> mount;  ///< turned by the head, or fixed
+  CameraMount mount;
   Optics optics = CameraModel{};
   double period_s = 0.0;   ///< between two exposures; 0: one in every tick
   double phase_s = 0.0;    ///< of the first exposure
