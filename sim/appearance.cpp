@@ -38,7 +38,7 @@ void describe_place(ParamVisitor& v, Clutter& mark) {
             "clutter is on the floor or on the ceiling, not on both");
   if (on_floor) mark.place = ClutterPlace::floor;
   if (on_ceiling) mark.place = ClutterPlace::ceiling;
-  v.where(mark.place == ClutterPlace::face, "without `on_floor` and `on_ceiling`", [&] {
+  v.where(mark.place == ClutterPlace::face, "neither `on_floor` nor `on_ceiling` is set", [&] {
     v.angle("normal_deg", mark.normal_yaw, {-360.0, 360.0},
             About("the normal of its face, from the world's x axis").required());
   });

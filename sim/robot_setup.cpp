@@ -51,7 +51,8 @@ void describe_head(ParamVisitor& v, RobotParams& robot, bool listed) {
   v.require(robot.head.mount_r.z() > 0.0, "mount_m",
             "the third coordinate, the height above the floor, must be > 0");
   v.angle("mount_yaw_deg", robot.head.mount_yaw, {-180.0, 180.0}, "direction of pan 0 on the base");
-  v.where(!listed, "without `cameras`", [&] { describe_offset(v, robot.head.camera_offset_h); });
+  v.where(!listed, "there is no list `cameras`",
+          [&] { describe_offset(v, robot.head.camera_offset_h); });
   HeadLimits& limits = robot.head_limits;
   describe_range(v, "pan_range_deg", 180.0, limits.pan_min, limits.pan_max,
                  "from the smallest to the largest pan");
@@ -206,10 +207,6 @@ bool has_zoom(const CameraSetup& setup) {
   return std::holds_alternative<ZoomCalibration>(setup.camera.optics);
 }
 
-bool on_head(const CameraSetup& setup) {
-  return std::holds_alternative<HeadGeometry>(setup.camera.mount);
-}
-
 void describe_listed(ParamVisitor& v, RobotSetup& setup) {
   CameraSetup item;
   item.camera.id = static_cast<CameraId>(setup.cameras.size());
@@ -231,6 +228,11 @@ void describe_listed(ParamVisitor& v, RobotSetup& setup) {
   setup.cameras.push_back(std::move(item));
 }
 
+bool has_head(const RobotSetup& setup) {
+  return std::any_of(setup.cameras.begin(), setup.cameras.end(),
+                     [](const CameraSetup& listed) { return on_head(listed.camera); });
+}
+
 /// Gives the cameras on the head its geometry, and a robot without such a camera no head.
 void mount_on_head(RobotSetup& setup) {
   for (CameraSetup& camera : setup.cameras) {
@@ -240,10 +242,11 @@ void mount_on_head(RobotSetup& setup) {
     *mount = setup.robot.head;
     mount->camera_offset_h = offset;
   }
-  if (const CameraSetup* camera = setup.pan_tilt_zoom())
-    setup.robot.head = std::get<HeadGeometry>(camera->camera.mount);
-  if (std::none_of(setup.cameras.begin(), setup.cameras.end(), on_head))
-    setup.robot.head_limits = {0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0};
+  if (const CameraSetup* directed = setup.directed_camera()) {
+    setup.robot.head = std::get<HeadGeometry>(directed->camera.mount);
+    if (!has_zoom(*directed)) setup.initial_zoom_mm = setup.zoom().min_zoom_mm();
+  }
+  if (!has_head(setup)) setup.robot.head_limits = {0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0};
 }
 
 }  // namespace
@@ -254,17 +257,17 @@ Rig RobotSetup::rig() const {
   return rig;
 }
 
-const CameraSetup* RobotSetup::pan_tilt_zoom() const {
-  const auto found = std::find_if(cameras.begin(), cameras.end(), [](const CameraSetup& camera) {
-    return has_zoom(camera) && on_head(camera);
-  });
-  return found == cameras.end() ? nullptr : &*found;
+const CameraSetup* RobotSetup::directed_camera() const {
+  const Rig mine = rig();
+  const Camera* directed = vigia::directed_camera(mine);
+  if (directed == nullptr) return nullptr;
+  return &cameras[static_cast<std::size_t>(directed - mine.cameras.data())];
 }
 
-const ZoomCalibration& RobotSetup::zoom() const {
-  const CameraSetup* camera = pan_tilt_zoom();
-  if (camera == nullptr) throw std::logic_error("the robot has no pan-tilt-zoom camera");
-  return std::get<ZoomCalibration>(camera->camera.optics);
+ZoomCalibration RobotSetup::zoom() const {
+  const CameraSetup* directed = directed_camera();
+  if (directed == nullptr) throw std::logic_error("the robot has no camera that turns");
+  return *zoom_calibration(directed->camera.optics);
 }
 
 RobotSetup pan_tilt_zoom_robot(const RobotParams& robot, const ZoomCalibration& zoom,
@@ -301,11 +304,10 @@ void describe(ParamVisitor& v, RobotSetup& setup) {
            [&] { describe_listed(v, setup); });
     v.require(!setup.cameras.empty(), "cameras", "a robot has at least one camera");
   });
-  const bool has_head = !listed || std::any_of(setup.cameras.begin(), setup.cameras.end(), on_head);
-  v.where(has_head, "with a camera on the head", [&] {
+  v.where(!listed || has_head(setup), "a camera is on the head", [&] {
     v.map("head", "the pan-tilt head", [&] { describe_head(v, setup.robot, listed); });
   });
-  v.where(!listed, "without `cameras`", [&] {
+  v.where(!listed, "there is no list `cameras`", [&] {
     CameraSetup only;
     Sensor sensor;
     v.map("camera", "the camera's sensor", [&] { describe_camera(v, sensor, only.imaging); });

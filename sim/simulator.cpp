@@ -74,7 +74,7 @@ Simulator::Simulator(const RobotSetup& setup, const WorldMap& world,
       scene_(world_, appearance_of(appearance, world, disturbances, seed),
              derive_seed(seed, "scene")),
       motion_blur_(disturbances.motion_blur) {
-  if (setup_.pan_tilt_zoom() != nullptr)
+  if (setup_.directed_camera() != nullptr)
     robot_.set_zoom_range(setup_.zoom().min_zoom_mm(), setup_.zoom().max_zoom_mm());
   robot_.set_camera(setup_.cameras.front().camera.mount);
   for (const CameraSetup& camera : setup_.cameras) {

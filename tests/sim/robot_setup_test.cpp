@@ -104,7 +104,7 @@ TEST(RobotSetup, ReadsARigOfCamerasWithoutAHead) {
   const Eigen::Vector3d sight = rig.at(0).rMc({}).linear() * Eigen::Vector3d::UnitZ();
   EXPECT_NEAR(sight.x(), std::cos(from_deg(20.0)), 1e-12);
   EXPECT_NEAR(sight.z(), -std::sin(from_deg(20.0)), 1e-12);
-  EXPECT_EQ(setup.pan_tilt_zoom(), nullptr);
+  EXPECT_EQ(setup.directed_camera(), nullptr);
   EXPECT_THROW(setup.zoom(), std::logic_error);
   EXPECT_EQ(setup.robot.head_limits.rate, 0.0);
   EXPECT_FALSE(setup.range_ring);
@@ -118,8 +118,8 @@ cameras:
   - {id: 0, camera_offset_m: [0.05, 0, 0.01], optics: zoom,
      table: [{zoom_mm: 8, focal_px: 580}, {zoom_mm: 48, focal_px: 3490}]}
 )");
-  ASSERT_NE(setup.pan_tilt_zoom(), nullptr);
-  EXPECT_EQ(setup.pan_tilt_zoom()->camera.id, 0);
+  ASSERT_NE(setup.directed_camera(), nullptr);
+  EXPECT_EQ(setup.directed_camera()->camera.id, 0);
   EXPECT_DOUBLE_EQ(setup.zoom().max_zoom_mm(), 48.0);
   EXPECT_DOUBLE_EQ(setup.robot.head.mount_r.x(), 0.2);
   EXPECT_DOUBLE_EQ(setup.robot.head.camera_offset_h.x(), 0.05);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -26,6 +27,10 @@ Eigen::Isometry3d mounted_camera(const CameraMount& mount, const HeadAngles& hea
 /// A motorised zoom, or optics that do not change.
 using Optics = std::variant<ZoomCalibration, CameraModel>;
 
+/// The focal length by the zoom's position: of a pinhole that does not zoom a table of one row at
+/// 0 mm, of other optics nothing.
+std::optional<ZoomCalibration> zoom_calibration(const Optics& optics);
+
 /// One camera of a robot, as the robot knows it.
 struct Camera {
   CameraId id = 0;
@@ -50,6 +55,12 @@ struct Rig {
   /// The camera of that id, which the rig must have: std::out_of_range.
   const Camera& at(CameraId id) const;
 };
+
+bool on_head(const Camera& camera);
+
+/// The camera that an attention directs: the first on the head that is a pinhole, with a zoom or
+/// without, or nullptr.
+const Camera* directed_camera(const Rig& rig);
 
 /// What places a robot's cameras in the world.
 struct RigOnGround {

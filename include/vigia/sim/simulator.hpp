@@ -29,15 +29,15 @@ struct CameraSetup {
 struct RobotSetup {
   std::string name = "robot";
   RobotParams robot = usual_robot();
-  std::vector<CameraSetup> cameras{CameraSetup{}};  ///< at least one; one zoom at most
+  std::vector<CameraSetup> cameras{CameraSetup{}};  ///< at least one; one with a zoom at most
   double initial_zoom_mm = 8.0;
   std::optional<RangeRingParams> range_ring;
 
   Rig rig() const;
-  /// The camera on the head that has a zoom, or nullptr.
-  const CameraSetup* pan_tilt_zoom() const;
-  /// The calibration of that camera. std::logic_error without one.
-  const ZoomCalibration& zoom() const;
+  /// The camera that an attention directs (vigia::directed_camera), or nullptr.
+  const CameraSetup* directed_camera() const;
+  /// The calibration of that camera, which there must be: std::logic_error.
+  ZoomCalibration zoom() const;
 };
 
 /// A robot of one pan-tilt-zoom camera, of id 0.
