@@ -97,10 +97,13 @@ PlanRow row_of(std::size_t index, const planner::AreaPlan& area) {
 PlanTable make_plan(const mission::MissionSetup& setup, const std::string& policy) {
   if (policy == "fixed" && !setup.look.fixed_landmark)
     throw InputError("--policy fixed: the mission needs the key planner.fixed_landmark");
+  if (setup.robot.directed_camera() == nullptr)
+    throw InputError("a perception plan is for a camera that the head turns, and the robot '" +
+                     setup.robot.name + "' has none");
   const auto& robot = setup.robot.robot;
   const planner::Visibility visibility(setup.world.plan, robot.head, robot.head_limits,
                                        setup.look.visibility, setup.world.ground);
-  const planner::HeadModel head{robot.head,           robot.head_limits,  setup.robot.zoom,
+  const planner::HeadModel head{robot.head,           robot.head_limits,  setup.robot.zoom(),
                                 setup.look.radius_px, setup.look.dwell_s, setup.look.fill,
                                 setup.world.ground};
   planner::FuzzySupervisors supervisors(setup.look.rules);

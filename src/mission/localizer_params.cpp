@@ -16,7 +16,7 @@ localization::LandmarkInformation landmark_information(const MissionSetup& setup
   params.sensor = setup.noise.sensor;
   params.radius_px = setup.look.radius_px;
   params.fill = setup.look.fill;
-  return {setup.robot.robot.head, setup.robot.zoom, params, setup.world.ground};
+  return {setup.robot.robot.head, setup.robot.zoom(), params, setup.world.ground};
 }
 
 localization::RelocalizerParams relocalizer_params(const MissionSetup& setup) {

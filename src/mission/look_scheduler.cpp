@@ -18,7 +18,7 @@ LookScheduler::LookScheduler(const MissionSetup& setup, const InformationModel& 
       visibility_(setup.world.plan, setup.robot.robot.head, setup.robot.robot.head_limits,
                   setup.look.visibility, setup.world.ground),
       head_model_{setup.robot.robot.head, setup.robot.robot.head_limits,
-                  setup.robot.zoom,       setup.look.radius_px,
+                  setup.robot.zoom(),     setup.look.radius_px,
                   setup.look.dwell_s,     setup.look.fill,
                   setup.world.ground},
       policy_(planner::make_look_policy(
