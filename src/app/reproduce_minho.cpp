@@ -1,5 +1,6 @@
 #include "papers.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -47,7 +48,10 @@ struct MinhoRun {
   const PaperOptions& options;
   evaluation::PaperTable& table;
 
-  int trials(int own) const { return options.seeds > 0 ? options.seeds : own; }
+  /// As many frames as there are seeds asked for, drives and kidnappings in proportion.
+  int trials(int own) const {
+    return options.seeds > 0 ? std::max(1, own * options.seeds / kFrames) : own;
+  }
   FieldMap field(const std::string& name) const {
     MapReader reader(load_config(options.config / "fields" / (name + ".yaml")), name);
     FieldMap map = read_field_map(reader.map("field"));

@@ -3,6 +3,7 @@
 #include "work_queue.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -74,6 +75,11 @@ Rider make_rider(FieldLocalizer localizer, const localization::FieldModel& model
     }
   }
   return odometry_rider(noise);
+}
+
+/// Whether goals take part in its pose and not only in which of several poses it is.
+bool measures_by_goals(FieldLocalizer localizer) {
+  return localizer != FieldLocalizer::field_grid;
 }
 
 /// The true robot: it makes for one way point after another.
@@ -157,26 +163,30 @@ FieldDrive drive_field(const FieldMap& map, const FieldDriveParams& params,
     false_lines = random_false_lines(map, params.frames.false_lines, random);
   const Eigen::Vector3d no_prior(map.length_m * map.length_m / 12.0,
                                  map.width_m * map.width_m / 12.0, kPi * kPi / 3.0);
-  Eigen::Matrix3d bound = prior.covariance;
-  if (!params.prior) bound = no_prior.asDiagonal();
+  // By the points alone, and with the goals.
+  std::array<Eigen::Matrix3d, 2> bounds;
+  bounds.fill(params.prior ? prior.covariance : Eigen::Matrix3d(no_prior.asDiagonal()));
   FieldDrive drive;
   for (int k = 0; k < params.count; ++k) {
     const Pose2 before = driver.truth();
     OdometryIncrement truly;
     const OdometryIncrement u = driver.drive(Stamp::from_seconds(k * params.period_s),
                                              Stamp::from_seconds((k + 1) * params.period_s), truly);
-    bound = predicted_bound(bound, before, truly, params.odometry);
+    for (Eigen::Matrix3d& bound : bounds)
+      bound = predicted_bound(bound, before, truly, params.odometry);
     if (params.kidnap_at && *params.kidnap_at == k) {
       driver.kidnap();
-      bound = no_prior.asDiagonal();
+      bounds.fill(no_prior.asDiagonal());
     }
     FieldFrame frame = draw_field_frame(map, params.frames, driver.truth(), random, false_lines);
     frame.scan.stamp = u.to;
-    bound = (bound.inverse() + frame.information).inverse();
+    bounds[0] = (bounds[0].inverse() + frame.information).inverse();
+    bounds[1] = (bounds[1].inverse() + frame.information + frame.goal_information).inverse();
     for (std::size_t i = 0; i < riders.size(); ++i) {
       riders[i].predict(u);
       riders[i].update(frame.scan);
-      drive[localizers[i]].push_back({driver.truth(), riders[i].belief(), bound});
+      drive[localizers[i]].push_back(
+          {driver.truth(), riders[i].belief(), bounds[measures_by_goals(localizers[i]) ? 1 : 0]});
     }
   }
   return drive;

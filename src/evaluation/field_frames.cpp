@@ -99,6 +99,19 @@ void add_information(const FieldFrameParams& params, const Pose2& truth, const T
   information += J * J.transpose() / (along_ray * along_ray + across_ray * across_ray);
 }
 
+void add_goal_information(const FieldFrameParams& params, const Pose2& truth,
+                          const Eigen::Vector2d& at, Eigen::Matrix3d& information) {
+  const Eigen::Vector2d to = at - truth.position();
+  const double range = to.norm();
+  const Eigen::Vector2d u = to / range;
+  const Eigen::Vector3d dbearing(u.y() / range, -u.x() / range, -1.0);
+  const Eigen::Vector3d drange(-u.x(), -u.y(), 0.0);
+  const double sigma_b = from_deg(params.bearing_sigma_deg);
+  const double sigma_r = params.goal_range_share * range;
+  information += dbearing * dbearing.transpose() / (sigma_b * sigma_b) +
+                 drange * drange.transpose() / (sigma_r * sigma_r);
+}
+
 localization::ColourSighting sight(const FieldFrameParams& params, const Pose2& truth,
                                    FieldColour colour, const Eigen::Vector2d& at,
                                    RandomStream& random) {
@@ -150,8 +163,10 @@ FieldFrame draw_field_frame(const FieldMap& map, const FieldFrameParams& params,
     if (!hit.normal.isZero()) add_information(params, truth, hit, frame.information);
   }
   if (params.goals)
-    for (const FieldGoal& goal : map.goals)
+    for (const FieldGoal& goal : map.goals) {
       frame.scan.goals.push_back(sight(params, truth, goal.colour, goal.centre(), random));
+      add_goal_information(params, truth, goal.centre(), frame.goal_information);
+    }
   frame.bound = frame.information.inverse();
   return frame;
 }

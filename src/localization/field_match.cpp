@@ -162,8 +162,7 @@ std::vector<FieldMatcher::Suggestion> FieldMatcher::match(const FieldScan& scan)
   rough.iterations = 12;
   rough.converged = 1e-3;
   const auto add = [&](const FieldFix& fix) {
-    const double log_evidence =
-        fix.log_evidence + model_->log_likelihood_of_sightings(scan, fix.pose);
+    const double log_evidence = log_evidence_of(*model_, scan, fix, model_->params().clutter);
     for (Suggestion& other : found)
       if (same_pose(other.fix.pose, fix.pose, params_.same_m, params_.same_rad)) {
         if (log_evidence > other.log_evidence) other = {fix, log_evidence, 0.0};

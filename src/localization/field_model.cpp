@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 
 #include "vigia/core/angle.hpp"
 #include "vigia/core/plane_geometry.hpp"
@@ -11,6 +13,7 @@ namespace {
 
 constexpr double kGateSigmas = 4.0;  // a line farther off has no share in a point
 constexpr double kWidestSigma_m = 0.6;
+constexpr double kSightingGate = 11.8;  // χ² of 3σ, two degrees of freedom
 const double kInvSqrt2Pi = 1.0 / std::sqrt(2.0 * kPi);
 
 /// One line's share in a point.
@@ -107,6 +110,42 @@ void add_point(const FieldDistance& distance, const PlacedPoint& placed,
   sums.on_lines += 1.0 - clutter_density / total;
 }
 
+/// Adds the bearing and range of a goal or post, if it can be @p target.
+void add_sighting(const ColourSighting& seen, const Eigen::Vector2d& target, const Pose2& pose,
+                  FieldLinearisation& sums) {
+  const Eigen::Vector2d to = target - pose.position();
+  const double range = to.norm();
+  const double db = wrap_angle(seen.bearing - std::atan2(to.y(), to.x()) + pose.theta);
+  const double dr = seen.range_m - range;
+  const double wb = 1.0 / (seen.bearing_sigma * seen.bearing_sigma);
+  const double wr = 1.0 / (seen.range_sigma_m * seen.range_sigma_m);
+  if (db * db * wb + dr * dr * wr > kSightingGate) return;
+  const Eigen::Vector2d u = to / range;
+  const Eigen::Vector3d dbearing_dpose(u.y() / range, -u.x() / range, -1.0);
+  const Eigen::Vector3d drange_dpose(-u.x(), -u.y(), 0.0);
+  sums.log_likelihood -= 0.5 * (db * db * wb + dr * dr * wr);
+  sums.gradient += wb * db * dbearing_dpose + wr * dr * drange_dpose;
+  sums.complete += wb * dbearing_dpose * dbearing_dpose.transpose() +
+                   wr * drange_dpose * drange_dpose.transpose();
+}
+
+/// Calls @p use with each goal and post seen and the places of those of its colour.
+template <typename Use>
+void for_each_sighting(const FieldMap& map, const FieldScan& scan, const Use& use) {
+  for (const ColourSighting& seen : scan.goals) {
+    std::vector<Eigen::Vector2d> targets;
+    for (const FieldGoal& goal : map.goals)
+      if (goal.colour == seen.colour) targets.push_back(goal.centre());
+    use(seen, targets);
+  }
+  for (const ColourSighting& seen : scan.posts) {
+    std::vector<Eigen::Vector2d> targets;
+    for (const CornerPost& post : map.posts)
+      if (post.outer == seen.colour) targets.push_back(post.at);
+    use(seen, targets);
+  }
+}
+
 double sighting_log_density(const ColourSighting& seen, const Eigen::Vector2d& target,
                             const Pose2& pose, double outliers, double floor_area) {
   const Eigen::Vector2d to = target - pose.position();
@@ -154,6 +193,33 @@ double FieldModel::log_likelihood(const std::vector<FieldPoint>& points, const P
   return sum;
 }
 
+double FieldModel::line_evidence(const std::vector<FieldPoint>& points, const Pose2& pose,
+                                 double clutter) const {
+  const Turn turn(pose);
+  const double c = clutter_density(clutter);
+  const double floor_variance = params_.floor_m * params_.floor_m;
+  const std::vector<FieldLine>& lines = distance_.lines();
+  std::vector<double> of_line(lines.size(), 0.0);
+  std::vector<std::pair<std::uint16_t, double>> shares;
+  for (const FieldPoint& point : points) {
+    const PlacedPoint placed = placed_at(point, turn);
+    const double off_lines = c * point.p_r.norm();
+    double total = off_lines;
+    shares.clear();
+    for (const std::uint16_t i : distance_.near(placed.p_w)) {
+      const double density = line_share(lines[i], placed, floor_variance).density;
+      if (density <= 0.0) continue;
+      shares.emplace_back(i, density);
+      total += density;
+    }
+    const double gain = std::log(total / off_lines);
+    for (const auto& [line, density] : shares) of_line[line] += density / total * gain;
+  }
+  double sum = 0.0;
+  for (const double gain : of_line) sum += std::min(params_.line_price, gain);
+  return sum;
+}
+
 FieldLinearisation FieldModel::linearise(const std::vector<FieldPoint>& points, const Pose2& pose,
                                          double clutter, double spread_m) const {
   const Turn turn(pose);
@@ -172,22 +238,23 @@ FieldLinearisation FieldModel::linearise(const std::vector<FieldPoint>& points, 
 double FieldModel::log_likelihood_of_sightings(const FieldScan& scan, const Pose2& pose) const {
   const double area = (map_.length_m + 2.0 * map_.margin_m) * (map_.width_m + 2.0 * map_.margin_m);
   double sum = 0.0;
-  const auto add = [&](const ColourSighting& seen, const auto& candidates, const auto& place_of) {
+  for_each_sighting(map_, scan, [&](const ColourSighting& seen, const auto& targets) {
     double best = -1e300;
-    for (const auto& candidate : candidates) {
-      const auto [colour, at] = place_of(candidate);
-      if (colour != seen.colour) continue;
-      best = std::max(best, sighting_log_density(seen, at, pose, params_.sighting_outliers, area));
-    }
+    for (const Eigen::Vector2d& target : targets)
+      best =
+          std::max(best, sighting_log_density(seen, target, pose, params_.sighting_outliers, area));
     if (best > -1e300) sum += best;
-  };
-  for (const ColourSighting& seen : scan.goals)
-    add(seen, map_.goals,
-        [](const FieldGoal& goal) { return std::make_pair(goal.colour, goal.centre()); });
-  for (const ColourSighting& seen : scan.posts)
-    add(seen, map_.posts,
-        [](const CornerPost& post) { return std::make_pair(post.outer, post.at); });
+  });
   return sum;
+}
+
+FieldLinearisation FieldModel::linearise_sightings(const FieldScan& scan, const Pose2& pose) const {
+  FieldLinearisation sums;
+  for_each_sighting(map_, scan, [&](const ColourSighting& seen, const auto& targets) {
+    for (const Eigen::Vector2d& target : targets) add_sighting(seen, target, pose, sums);
+  });
+  sums.observed = sums.complete;
+  return sums;
 }
 
 double FieldModel::log_likelihood(const FieldScan& scan, const Pose2& pose) const {

@@ -87,7 +87,6 @@ void finish(const FieldLinearisation& at, FieldFix& fix) {
     return;
   }
   fix.covariance = information.inverse();
-  fix.log_evidence = at.log_likelihood + 0.5 * std::log((2.0 * kPi * fix.covariance).determinant());
 }
 
 }  // namespace
@@ -132,7 +131,16 @@ FieldFix refine_field_pose(const FieldModel& model, const std::vector<FieldPoint
     at = linearise(fix.pose);
   }
   finish(at, fix);
+  fix.log_prior = prior_term.log_density(fix.pose);
+  fix.log_likelihood -= fix.log_prior;
   return fix;
+}
+
+double log_evidence_of(const FieldModel& model, const FieldScan& scan, const FieldFix& fix,
+                       double clutter) {
+  const double log_volume = 0.5 * std::log((2.0 * kPi * fix.covariance).determinant());
+  return model.line_evidence(scan.points, fix.pose, clutter) +
+         model.log_likelihood_of_sightings(scan, fix.pose) + fix.log_prior + log_volume;
 }
 
 }  // namespace vigia::localization

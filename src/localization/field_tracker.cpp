@@ -59,7 +59,7 @@ void FieldTracker::refine_all(const FieldScan& scan) {
     if (fix.status == FieldFixStatus::degenerate) continue;
     hypothesis.pose = fix.pose;
     hypothesis.covariance = fix.covariance;
-    hypothesis.log_weight += fix.log_evidence + model_->log_likelihood_of_sightings(scan, fix.pose);
+    hypothesis.log_weight += log_evidence_of(*model_, scan, fix, clutter_);
   }
 }
 
@@ -78,9 +78,8 @@ void FieldTracker::add_matches(const FieldScan& scan) {
     const FieldFix fix =
         refine_field_pose(*model_, scan.points, suggestion.fix.pose, std::nullopt, fixed);
     if (fix.status == FieldFixStatus::degenerate) continue;
-    const double log_evidence =
-        fix.log_evidence + model_->log_likelihood_of_sightings(scan, fix.pose);
-    hypotheses_.push_back({fix.pose, fix.covariance, log_prior + log_evidence});
+    hypotheses_.push_back(
+        {fix.pose, fix.covariance, log_prior + log_evidence_of(*model_, scan, fix, clutter_)});
   }
 }
 

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <unordered_set>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 #include "vigia/core/angle.hpp"
 #include "vigia/core/plane_geometry.hpp"
@@ -19,12 +21,29 @@ constexpr double kClusterTurn = 0.35;
 constexpr std::size_t kMostHypotheses = 4;
 constexpr double kWidening = 1.5;  // of a suggestion's σ, so that its samples cover it
 constexpr double kKldQuantile = 2.326;
+const Eigen::Matrix3d kTinyVariance = 1e-10 * Eigen::Matrix3d::Identity();
+constexpr double kProposalWidening = 1.5;  // of a suggestion's covariance
+constexpr double kMinInformedWeight = 0.01;
+constexpr double kWideCluster_m = 0.3;
+constexpr double kAgreeingSigmas = 4.0;
+constexpr double kUsualFall = 15.0;  // of the log-likelihood below its long-term mean, by chance
 
 double log_gaussian(const Eigen::Vector3d& off, const Eigen::Matrix3d& covariance) {
   const Eigen::LLT<Eigen::Matrix3d> llt(covariance);
   const Eigen::Vector3d white = llt.matrixL().solve(off);
   const double log_root = llt.matrixLLT().diagonal().array().log().sum();
   return -0.5 * white.squaredNorm() - log_root - 1.5 * std::log(2.0 * kPi);
+}
+
+/// (x, y, θ) turned by an angle.
+Eigen::Matrix3d in_frame(double theta) {
+  return Eigen::AngleAxisd(theta, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+}
+
+/// A covariance in the frame of a robot with heading @p theta, in world axes.
+Eigen::Matrix3d turned(const Eigen::Matrix3d& covariance_r, double theta) {
+  const Eigen::Matrix3d R = in_frame(theta);
+  return R * covariance_r * R.transpose();
 }
 
 Eigen::Vector3d normal_vector(RandomStream& random) {
@@ -105,16 +124,25 @@ bool belongs(const Pose2& centre, const Pose2& pose) {
   return d.head<2>().norm() < kClusterRadius_m && std::abs(d.z()) < kClusterTurn;
 }
 
-/// Mean and spread of the particles marked for it.
-PoseHypothesis hypothesis_of(const std::vector<Particle>& particles, const Pose2& centre,
-                             std::vector<bool>& taken) {
+constexpr std::size_t kNoCluster = 1000;
+
+/// Particles about one place, the heaviest cluster first.
+struct Clusters {
+  std::vector<PoseHypothesis> all;    ///< mean, spread and weight of each
+  std::vector<std::size_t> of;        ///< per particle, or kNoCluster
+  std::vector<std::size_t> heaviest;  ///< per cluster, its heaviest particle
+};
+
+/// Mean and spread of the free particles about @p centre, which become the cluster's.
+PoseHypothesis gather(const std::vector<Particle>& particles, const Pose2& centre,
+                      std::size_t cluster, std::vector<std::size_t>& of) {
   PoseHypothesis hypothesis;
   hypothesis.weight = 0.0;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < particles.size(); ++i) {
-    if (taken[i] || !belongs(centre, particles[i].pose)) continue;
-    taken[i] = true;
+    if (of[i] != kNoCluster || !belongs(centre, particles[i].pose)) continue;
+    of[i] = cluster;
     const Eigen::Vector3d d = difference(particles[i].pose, centre);
     hypothesis.weight += particles[i].weight;
     sum += particles[i].weight * d;
@@ -127,26 +155,115 @@ PoseHypothesis hypothesis_of(const std::vector<Particle>& particles, const Pose2
   return hypothesis;
 }
 
-std::vector<PoseHypothesis> clusters_of(const std::vector<Particle>& particles) {
-  std::vector<bool> taken(particles.size(), false);
-  std::vector<PoseHypothesis> clusters;
-  while (clusters.size() < kMostHypotheses) {
+Clusters clusters_of(const std::vector<Particle>& particles) {
+  Clusters clusters;
+  clusters.of.assign(particles.size(), kNoCluster);
+  while (clusters.all.size() < kMostHypotheses) {
     std::size_t heaviest = particles.size();
     for (std::size_t i = 0; i < particles.size(); ++i)
-      if (!taken[i] && particles[i].weight > 0.0 &&
+      if (clusters.of[i] == kNoCluster && particles[i].weight > 0.0 &&
           (heaviest == particles.size() || particles[i].weight > particles[heaviest].weight))
         heaviest = i;
     if (heaviest == particles.size()) break;
-    clusters.push_back(hypothesis_of(particles, particles[heaviest].pose, taken));
+    clusters.all.push_back(
+        gather(particles, particles[heaviest].pose, clusters.all.size(), clusters.of));
+    clusters.heaviest.push_back(heaviest);
   }
-  std::sort(clusters.begin(), clusters.end(),
-            [](const PoseHypothesis& a, const PoseHypothesis& b) { return a.weight > b.weight; });
   return clusters;
+}
+
+std::vector<PoseHypothesis> by_weight(std::vector<PoseHypothesis> hypotheses) {
+  std::sort(hypotheses.begin(), hypotheses.end(),
+            [](const PoseHypothesis& a, const PoseHypothesis& b) { return a.weight > b.weight; });
+  return hypotheses;
+}
+
+/// Weights by the log-likelihoods; their sum becomes one.
+void weigh_by(const std::vector<double>& log_likelihoods, std::vector<Particle>& particles) {
+  const double highest = *std::max_element(log_likelihoods.begin(), log_likelihoods.end());
+  double sum = 0.0;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    particles[i].weight *= std::exp(log_likelihoods[i] - highest);
+    sum += particles[i].weight;
+  }
+  for (Particle& particle : particles) particle.weight /= sum;
+}
+
+double effective_number(const std::vector<Particle>& particles) {
+  double squares = 0.0;
+  for (const Particle& particle : particles) squares += particle.weight * particle.weight;
+  return 1.0 / squares;
 }
 
 bool nearer_as_twin(const Pose2& pose, const Pose2& mean) {
   return (FieldModel::half_turned(pose).position() - mean.position()).norm() <
          (pose.position() - mean.position()).norm();
+}
+
+/// A pose that an image suggests by itself.
+struct SuggestedPose {
+  Pose2 pose;
+  Eigen::Matrix3d covariance;
+};
+
+/// Draws a particle's motion noise with the image in view (Grisetti, Stachniss, Burgard 2007): from
+/// the product of the noise about the particle, N(x, Q), and of the pose that the image suggests by
+/// itself, N(z, R).
+class InformedNoise {
+ public:
+  InformedNoise(const Eigen::Matrix3d& noise, const SuggestedPose& suggested)
+      : suggested_(suggested.pose),
+        suggested_covariance_(kProposalWidening * suggested.covariance),
+        sum_(noise + suggested_covariance_),
+        gain_(noise * sum_.inverse()) {
+    const Eigen::Matrix3d left = noise - gain_ * noise;
+    root_ = Eigen::Matrix3d(0.5 * (left + left.transpose()) + kTinyVariance).llt().matrixL();
+  }
+
+  /// @p log_weight: of the noise's density over the proposal's.
+  Pose2 draw(const Pose2& at, RandomStream& random, double& log_weight) const {
+    const Eigen::Vector3d innovation = difference(suggested_, at);
+    const Pose2 mean = Pose2::from_vector(at.vector() + gain_ * innovation);
+    const Pose2 drawn = sample_about(mean, root_, random);
+    // N(x'; x, Q) / q(x') = N(z; x, Q + R) / N(x'; z, R).
+    log_weight = log_gaussian(innovation, sum_) -
+                 log_gaussian(difference(drawn, suggested_), suggested_covariance_);
+    return drawn;
+  }
+
+ private:
+  Pose2 suggested_;
+  Eigen::Matrix3d suggested_covariance_;
+  Eigen::Matrix3d sum_;
+  Eigen::Matrix3d gain_;
+  Eigen::Matrix3d root_;
+};
+
+/// The fix by the points, moved by the goals and posts in sight.
+SuggestedPose with_sightings(const FieldModel& model, const FieldScan& scan, const FieldFix& fix) {
+  const FieldLinearisation seen = model.linearise_sightings(scan, fix.pose);
+  const Eigen::Matrix3d covariance =
+      Eigen::Matrix3d(fix.covariance.inverse() + seen.complete).inverse();
+  return {Pose2::from_vector(fix.pose.vector() + covariance * seen.gradient), covariance};
+}
+
+/// What the image suggests near a cluster, where it does and the cluster is narrow.
+std::optional<SuggestedPose> agreeing_suggestion(const FieldModel& model, const FieldScan& scan,
+                                                 const PoseHypothesis& cluster,
+                                                 const Eigen::Matrix3d& noise, double clutter) {
+  if (cluster.weight < kMinInformedWeight ||
+      Eigen::Matrix3d(cluster.covariance + noise).diagonal().head<2>().maxCoeff() >
+          kWideCluster_m * kWideCluster_m)
+    return std::nullopt;
+  FieldRefineParams fixed;
+  fixed.clutter = clutter;
+  const FieldFix fix = refine_field_pose(model, scan.points, cluster.pose, std::nullopt, fixed);
+  if (fix.status != FieldFixStatus::converged) return std::nullopt;
+  const SuggestedPose suggested = with_sightings(model, scan, fix);
+  const Eigen::Vector3d off = difference(suggested.pose, cluster.pose);
+  const Eigen::Matrix3d sum = cluster.covariance + noise + suggested.covariance;
+  if (off.dot(sum.inverse() * off) > kAgreeingSigmas * kAgreeingSigmas) return std::nullopt;
+  return suggested;
 }
 
 }  // namespace
@@ -167,25 +284,23 @@ void Mcl::sample_uniform(int count) {
   }
 }
 
-void Mcl::sample_gaussian(const Prior& prior, int count) {
-  const Eigen::Matrix3d root = prior.covariance.llt().matrixL();
-  for (int i = 0; i < count; ++i)
-    particles_.push_back({sample_about(prior.pose, root, random_), 1.0 / count});
-}
-
 void Mcl::reset(Stamp stamp, const std::optional<Prior>& prior) {
   particles_.clear();
   fast_.reset();
   slow_.reset();
   since_check_ = params_.check_every;
-  narrow_start_ = prior.has_value();
+  given_prior_ = prior.has_value();
   twin_weight_ = 0.0;
+  motion_noise_.setZero();
   const int count = params_.method == MclParams::Method::as_described ? params_.min_particles
                                                                       : params_.max_particles;
-  if (prior)
-    sample_gaussian(*prior, count);
-  else
+  if (prior) {
+    particles_.assign(static_cast<std::size_t>(count), {prior->pose, 1.0 / count});
+    // As any noise, it is drawn with the first image in view.
+    motion_noise_ = turned(prior->covariance, -prior->pose.theta);
+  } else {
     sample_uniform(count);
+  }
   if (model_->symmetric() && !prior) twin_weight_ = 0.5;
   belief_ = Belief{};
   belief_.stamp = stamp;
@@ -193,16 +308,14 @@ void Mcl::reset(Stamp stamp, const std::optional<Prior>& prior) {
 }
 
 void Mcl::predict(const OdometryIncrement& increment) {
-  const Eigen::Vector3d sigma =
-      control_covariance(increment, params_.odometry).diagonal().cwiseSqrt();
-  for (Particle& particle : particles_) {
-    const Eigen::Vector3d noise = sigma.cwiseProduct(normal_vector(random_));
-    OdometryIncrement u = increment;
-    u.rot1 += noise.x();
-    u.trans += noise.y();
-    u.rot2 += noise.z();
-    particle.pose = move(particle.pose, u);
-  }
+  // In each particle's own frame the move and its noise are the same for all.
+  const Pose2 origin;
+  const Eigen::Matrix3d back = in_frame(-move(origin, increment).theta);
+  const Eigen::Matrix3d F = back * move_jacobian_pose(origin, increment);
+  const Eigen::Matrix3d G = back * move_jacobian_control(origin, increment);
+  motion_noise_ = F * motion_noise_ * F.transpose() +
+                  G * control_covariance(increment, params_.odometry) * G.transpose();
+  for (Particle& particle : particles_) particle.pose = move(particle.pose, increment);
   belief_.stamp = increment.to;
   refresh_belief();
 }
@@ -216,8 +329,9 @@ Mcl::Spread Mcl::spread_of_all() const {
     sum += particle.weight * d;
     squares += particle.weight * d * d.transpose();
   }
+  const Eigen::Matrix3d noise = turned(motion_noise_, centre.theta);
   return {Pose2::from_vector(centre.vector() + sum),
-          squares - sum * sum.transpose() + 1e-8 * Eigen::Matrix3d::Identity()};
+          squares - sum * sum.transpose() + noise + 1e-8 * Eigen::Matrix3d::Identity()};
 }
 
 double Mcl::log_weight(const FieldScan& scan, const Pose2& pose) const {
@@ -227,20 +341,40 @@ double Mcl::log_weight(const FieldScan& scan, const Pose2& pose) const {
          model_->log_likelihood_of_sightings(scan, pose);
 }
 
-void Mcl::weigh(const FieldScan& scan) {
-  log_likelihoods_.clear();
-  for (const Particle& particle : particles_)
-    log_likelihoods_.push_back(log_weight(scan, particle.pose));
+std::vector<double> Mcl::draw_motion_noise(const FieldScan& scan) {
+  std::vector<double> log_weights(particles_.size(), 0.0);
+  Clusters clusters;
+  std::vector<std::optional<InformedNoise>> informed;
+  if (params_.method == MclParams::Method::best) {
+    clusters = clusters_of(particles_);
+    for (const PoseHypothesis& cluster : clusters.all) {
+      const Eigen::Matrix3d noise = turned(motion_noise_, cluster.pose.theta) + kTinyVariance;
+      const auto suggested = agreeing_suggestion(*model_, scan, cluster, noise, clutter_);
+      informed.emplace_back(suggested
+                                ? std::optional<InformedNoise>(InformedNoise(noise, *suggested))
+                                : std::nullopt);
+    }
+  }
+  const Eigen::Matrix3d root = Eigen::Matrix3d(motion_noise_ + kTinyVariance).llt().matrixL();
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    Pose2& pose = particles_[i].pose;
+    const std::size_t cluster = clusters.of.empty() ? kNoCluster : clusters.of[i];
+    pose = cluster != kNoCluster && informed[cluster]
+               ? informed[cluster]->draw(pose, random_, log_weights[i])
+               : sample_about(pose, in_frame(pose.theta) * root, random_);
+  }
+  motion_noise_.setZero();
+  return log_weights;
 }
 
 double Mcl::kidnap_prior() const {
-  if (!fast_ || !slow_) return narrow_start_ ? 1e-3 : 0.5;
-  const double fall = std::max(0.0, *slow_ - *fast_ - 5.0);
+  if (!fast_ || !slow_) return given_prior_ ? params_.kidnapped : 0.5;
+  const double fall = std::max(0.0, *slow_ - *fast_ - kUsualFall);
   return std::clamp(1.0 - std::exp(-0.1 * fall), params_.kidnapped, 0.5);
 }
 
 /// Samples of what the image suggests, weighed as samples of the mixture prior.
-void Mcl::inject(const FieldScan& scan, const Spread& before) {
+void Mcl::inject(const FieldScan& scan, const Pose2& before) {
   const auto suggestions = matcher_.match(scan);
   if (suggestions.empty()) return;
   const FieldMap& map = model_->map();
@@ -251,7 +385,7 @@ void Mcl::inject(const FieldScan& scan, const Spread& before) {
   double total = 0.0;
   for (const auto& s : suggestions) {
     // Of twins that nothing tells apart, the one on the particles' side.
-    if (model_->symmetric() && nearer_as_twin(s.fix.pose, before.mean)) {
+    if (model_->symmetric() && nearer_as_twin(s.fix.pose, before)) {
       shares.push_back(0.0);
       continue;
     }
@@ -268,18 +402,12 @@ void Mcl::inject(const FieldScan& scan, const Spread& before) {
     const Eigen::Matrix3d root = wide.llt().matrixL();
     for (int i = 0; i < count; ++i) {
       const Pose2 pose = sample_about(fix.pose, root, random_);
-      double log_prior = log_uniform;
-      if (narrow_start_) {
-        const double own_prior = log_gaussian(difference(pose, before.mean), before.covariance);
-        log_prior = std::max(log_prior, own_prior);
-      }
       const double log_proposal = log_gaussian(difference(pose, fix.pose), wide);
-      particles_.push_back({pose, std::exp(std::min(600.0, log_prior - log_proposal)) / count});
+      particles_.push_back({pose, std::exp(std::min(600.0, log_uniform - log_proposal)) / count});
       log_likelihoods_.push_back(log_weight(scan, pose));
     }
   }
-  const double keep = narrow_start_ ? 1e-3 : 1.0 - p;
-  for (std::size_t i = 0; i < own; ++i) particles_[i].weight *= keep;
+  for (std::size_t i = 0; i < own; ++i) particles_[i].weight *= 1.0 - p;
 }
 
 void Mcl::resample() {
@@ -302,6 +430,41 @@ void Mcl::resample() {
     chosen.push_back({particles_[i].pose, step});
   }
   particles_ = std::move(chosen);
+  if (!fixed) spread_copies();
+}
+
+void Mcl::spread_copies() {
+  // Liu, West 2001: shrunk towards the mean and spread by a kernel, so that mean and covariance
+  // stay.
+  const double h = params_.kernel;
+  const double shrink = std::sqrt(1.0 - h * h);
+  const Clusters clusters = clusters_of(particles_);
+  std::vector<Eigen::Matrix3d> roots;
+  for (const PoseHypothesis& cluster : clusters.all)
+    roots.push_back(h * Eigen::Matrix3d(cluster.covariance.llt().matrixL()));
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    if (clusters.of[i] == kNoCluster) continue;
+    const Pose2& mean = clusters.all[clusters.of[i]].pose;
+    const Eigen::Vector3d off = shrink * difference(particles_[i].pose, mean);
+    particles_[i].pose =
+        sample_about(Pose2::from_vector(mean.vector() + off), roots[clusters.of[i]], random_);
+  }
+}
+
+void Mcl::weigh_clusters(const FieldScan& scan) {
+  const Clusters clusters = clusters_of(particles_);
+  if (clusters.all.size() < 2) return;
+  std::vector<double> logs;
+  for (const std::size_t i : clusters.heaviest) {
+    const Pose2& pose = particles_[i].pose;
+    logs.push_back(model_->line_evidence(scan.points, pose, clutter_) -
+                   model_->log_likelihood(scan.points, pose, clutter_));
+  }
+  const double least = *std::min_element(logs.begin(), logs.end());
+  std::vector<double> corrections;
+  for (const std::size_t cluster : clusters.of)
+    corrections.push_back(cluster == kNoCluster ? least : logs[cluster]);
+  weigh_by(corrections, particles_);
 }
 
 /// Follows the likelihood of the estimate and the share of clutter.
@@ -318,41 +481,32 @@ void Mcl::watch_likelihood(const FieldScan& scan) {
 void Mcl::update(const FieldScan& scan) {
   if (scan.points.empty() && scan.goals.empty() && scan.posts.empty()) return;
   belief_.stamp = scan.stamp;
-  const Spread before = spread_of_all();
-  weigh(scan);
+  const Pose2 before = spread_of_all().mean;
+  log_likelihoods_ = draw_motion_noise(scan);
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    log_likelihoods_[i] += log_weight(scan, particles_[i].pose);
   const std::size_t own = particles_.size();
   const bool best = params_.method == MclParams::Method::best;
-  const bool from_prior = narrow_start_;
-  const bool fallen = fast_ && slow_ && *fast_ < *slow_ - 8.0;
+  const bool fallen = fast_ && slow_ && *fast_ < *slow_ - kUsualFall;
   if (best && (++since_check_ >= params_.check_every || (fallen && since_check_ >= 2))) {
     since_check_ = 0;
     inject(scan, before);
-    narrow_start_ = false;
   }
-  const double highest = *std::max_element(log_likelihoods_.begin(), log_likelihoods_.end());
-  double sum = 0.0;
+  weigh_by(log_likelihoods_, particles_);
+  if (best) weigh_clusters(scan);
   double injected = 0.0;
-  double squares = 0.0;
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    particles_[i].weight *= std::exp(log_likelihoods_[i] - highest);
-    sum += particles_[i].weight;
-    if (i >= own) injected += particles_[i].weight;
-  }
-  for (Particle& particle : particles_) {
-    particle.weight /= sum;
-    squares += particle.weight * particle.weight;
-  }
-  if (model_->symmetric() && !from_prior) twin_weight_ += injected / sum * (0.5 - twin_weight_);
+  for (std::size_t i = own; i < particles_.size(); ++i) injected += particles_[i].weight;
+  if (model_->symmetric()) twin_weight_ += injected * (0.5 - twin_weight_);
   refresh_belief();
   if (best) watch_likelihood(scan);
-  const double effective = 1.0 / squares;
-  if (effective < params_.resample_share * static_cast<double>(particles_.size()) ||
+  if (effective_number(particles_) <
+          params_.resample_share * static_cast<double>(particles_.size()) ||
       particles_.size() > own)
     resample();
 }
 
 void Mcl::refresh_belief() {
-  std::vector<PoseHypothesis> clusters = clusters_of(particles_);
+  std::vector<PoseHypothesis> clusters = by_weight(clusters_of(particles_).all);
   if (model_->symmetric() && twin_weight_ > 1e-6) {
     PoseHypothesis twin = clusters.front();
     twin.pose = FieldModel::half_turned(twin.pose);
@@ -361,9 +515,10 @@ void Mcl::refresh_belief() {
     twin.weight *= twin_weight_;
     for (PoseHypothesis& cluster : clusters) cluster.weight *= 1.0 - twin_weight_;
     clusters.push_back(twin);
-    std::sort(clusters.begin(), clusters.end(),
-              [](const PoseHypothesis& a, const PoseHypothesis& b) { return a.weight > b.weight; });
+    clusters = by_weight(std::move(clusters));
   }
+  for (PoseHypothesis& cluster : clusters)
+    cluster.covariance += turned(motion_noise_, cluster.pose.theta);
   belief_.pose = clusters.front().pose;
   belief_.covariance = clusters.front().covariance;
   belief_.hypotheses.clear();

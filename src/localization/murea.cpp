@@ -22,21 +22,23 @@ struct Perception {
   Eigen::Vector2d p_r = Eigen::Vector2d::Zero();
   double range_m = 0.0;
   double tolerance_m = 0.0;
+  double votes = 1.0;
   const FieldColour* colour = nullptr;  ///< of a goal or post
   bool post = false;
 };
 
-std::vector<Perception> perceptions_of(const FieldScan& scan, double sigmas) {
+std::vector<Perception> perceptions_of(const FieldScan& scan, const MureaParams& params) {
+  const double sigmas = params.tolerance_sigmas;
   std::vector<Perception> all;
   for (const FieldPoint& point : scan.points) {
     const double spread = std::sqrt(0.5 * point.covariance.trace());
-    all.push_back({point.p_r, point.p_r.norm(), sigmas * spread, nullptr, false});
+    all.push_back({point.p_r, point.p_r.norm(), sigmas * spread, 1.0, nullptr, false});
   }
   const auto add = [&](const std::vector<ColourSighting>& sightings, bool post) {
     for (const ColourSighting& seen : sightings)
       all.push_back({seen.range_m * unit_vector(seen.bearing), seen.range_m,
                      sigmas * std::hypot(seen.range_sigma_m, seen.bearing_sigma * seen.range_m),
-                     &seen.colour, post});
+                     params.sighting_votes, &seen.colour, post});
   };
   add(scan.goals, false);
   add(scan.posts, true);
@@ -56,8 +58,8 @@ double distance_to_sighted(const FieldMap& map, const Perception& seen, const Ei
   return nearest;
 }
 
-/// The vote of a perception for a cell: one when it agrees with the cell's middle, falling to none
-/// where no pose of the cell allows it.
+/// The vote of a perception for a cell: its whole when it agrees with the cell's middle, falling to
+/// none where no pose of the cell allows it.
 double vote(const FieldModel& model, const FieldDistance& wide, const Perception& seen,
             const Eigen::Vector2d& position, const Eigen::Vector2d& ahead,
             const Resolution& resolution) {
@@ -72,7 +74,7 @@ double vote(const FieldModel& model, const FieldDistance& wide, const Perception
     off = distance_to_sighted(model.map(), seen, p);
   else
     off = allowed < model.distance().reach_m() ? model.distance().distance(p) : wide.distance(p);
-  return off <= allowed ? 1.0 - off / (allowed + 1e-9) : 0.0;
+  return off <= allowed ? seen.votes * (1.0 - off / (allowed + 1e-9)) : 0.0;
 }
 
 double votes_for(const FieldModel& model, const FieldDistance& wide,
@@ -142,7 +144,8 @@ Eigen::Vector3d off_by(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 }
 
 /// Mean and spread of the hill of votes about the best cell.
-void conclude(const std::vector<MureaCell>& cells, const Resolution& resolution, MureaFix& fix) {
+void conclude(const std::vector<MureaCell>& cells, const Resolution& resolution,
+              const MureaParams& params, MureaFix& fix) {
   const MureaCell& best = cells.front();
   const double within_m = std::max(0.25, 3.0 * resolution.side_m);
   const double within_rad = std::max(0.1, 3.0 * resolution.span);
@@ -156,7 +159,7 @@ void conclude(const std::vector<MureaCell>& cells, const Resolution& resolution,
       fix.second = Pose2::from_vector(cell.middle);
     }
     if (d.head<2>().norm() > within_m || std::abs(d.z()) > within_rad) continue;
-    const double weight = std::pow(cell.votes / best.votes, 16.0);
+    const double weight = std::exp(params.vote_gain * (cell.votes - best.votes));
     sum += weight * d;
     squares += weight * d * d.transpose();
     weights += weight;
@@ -166,8 +169,9 @@ void conclude(const std::vector<MureaCell>& cells, const Resolution& resolution,
   fix.votes = best.votes;
   fix.pose = Pose2::from_vector(best.middle + mean);
   const Eigen::Vector3d cell(resolution.side_m, resolution.side_m, resolution.span);
-  fix.covariance = squares / weights - mean * mean.transpose();
-  fix.covariance += Eigen::Matrix3d((cell.cwiseProduct(cell) / 12.0).asDiagonal());
+  fix.covariance =
+      params.error_share * params.vote_gain * (squares / weights - mean * mean.transpose()) +
+      Eigen::Matrix3d((0.01 * cell.cwiseProduct(cell)).asDiagonal());
 }
 
 }  // namespace
@@ -177,7 +181,7 @@ Murea::Murea(const FieldModel& model, const MureaParams& params)
 
 MureaFix Murea::locate(const FieldScan& scan, const std::optional<Prior>& estimate) const {
   MureaFix fix;
-  const std::vector<Perception> seen = perceptions_of(scan, params_.tolerance_sigmas);
+  const std::vector<Perception> seen = perceptions_of(scan, params_);
   if (seen.empty()) return fix;
   Resolution resolution{params_.coarse_m, from_deg(params_.coarse_deg)};
   std::vector<MureaCell> cells = first_cells(model_->map(), estimate, resolution);
@@ -196,7 +200,7 @@ MureaFix Murea::locate(const FieldScan& scan, const std::optional<Prior>& estima
   if (cells.front().votes <= 0.0) return fix;
   fix.cell_m = resolution.side_m;
   fix.cell_deg = to_deg(resolution.span);
-  conclude(cells, resolution, fix);
+  conclude(cells, resolution, params_, fix);
   return fix;
 }
 

@@ -41,7 +41,8 @@ struct FieldDriveParams {
 struct FieldDriveSample {
   Pose2 truth;
   Belief belief;
-  Eigen::Matrix3d bound = Eigen::Matrix3d::Zero();  ///< posterior Cramér–Rao bound
+  Eigen::Matrix3d bound = Eigen::Matrix3d::Zero();  ///< posterior Cramér–Rao bound, goals in it
+                                                    ///< for those that measure by them
   double error_m() const { return (belief.pose.position() - truth.position()).norm(); }
   /// Wrong by more than half a metre.
   bool wrong() const { return error_m() > 0.5; }

@@ -42,7 +42,9 @@ struct FieldFrame {
   /// Bound on the covariance of (x, y, θ) from the points that lie on lines, each known to lie on
   /// its own: the Cramér–Rao bound of a frame without prior.
   Eigen::Matrix3d bound = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< of the points
+  Eigen::Matrix3d goal_information =
+      Eigen::Matrix3d::Zero();  ///< of the goals' bearings and ranges
   int true_points = 0;
 };
 

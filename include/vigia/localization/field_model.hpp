@@ -17,6 +17,9 @@ struct FieldModelParams {
   double floor_m = 0.002;
   /// Probability that a goal or post is not what its colour says.
   double sighting_outliers = 0.02;
+  /// Most that the points on one line count for between poses far apart, nats: the price of a
+  /// straight line that the map lacks and that would explain them as well.
+  double line_price = 10.0;
 };
 
 /// The sum over a scan's points at a pose.
@@ -55,8 +58,18 @@ class FieldModel {
   /// The same with derivatives. @p spread_m: σ added to every point, to widen the basin.
   FieldLinearisation linearise(const std::vector<FieldPoint>& points, const Pose2& pose,
                                double clutter, double spread_m = 0.0) const;
+  /// Log-evidence for a pose against others far from it, where what is false may lie on straight
+  /// lines: how much better than clutter the map explains the points, Σ_j min(line_price, Σ_i r_ij
+  /// log(Λ_i/c_i)) over the lines j, r_ij the share of line j in point i. Within a hypothesis the
+  /// likelihood is right; between hypotheses it takes the points of one false line for as many
+  /// independent facts.
+  double line_evidence(const std::vector<FieldPoint>& points, const Pose2& pose,
+                       double clutter) const;
   /// Log-likelihood of goals and posts, up to a constant.
   double log_likelihood_of_sightings(const FieldScan& scan, const Pose2& pose) const;
+  /// Gradient and information of the sightings that lie within 3σ of a goal or post of their
+  /// colour.
+  FieldLinearisation linearise_sightings(const FieldScan& scan, const Pose2& pose) const;
   /// Log-likelihood of the whole scan at the share of clutter assumed.
   double log_likelihood(const FieldScan& scan, const Pose2& pose) const;
 

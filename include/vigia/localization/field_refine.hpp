@@ -26,11 +26,10 @@ struct FieldFix {
   FieldFixStatus status = FieldFixStatus::degenerate;
   Pose2 pose;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of (x, y, θ), the prior's share in it
-  double log_likelihood = 0.0;  ///< of the points (and the prior's density, where one was given)
-  /// Log of the integral of likelihood (times prior) about the pose, by Laplace's approximation.
-  double log_evidence = 0.0;
-  double clutter = 0.0;   ///< share that was assumed or estimated
-  double on_lines = 0.0;  ///< expected number of points on lines
+  double log_likelihood = 0.0;                           ///< of the points
+  double log_prior = 0.0;  ///< log density of the prior there, 0 without one
+  double clutter = 0.0;    ///< share that was assumed or estimated
+  double on_lines = 0.0;   ///< expected number of points on lines
   int iterations = 0;
 };
 
@@ -40,5 +39,10 @@ struct FieldFix {
 FieldFix refine_field_pose(const FieldModel& model, const std::vector<FieldPoint>& points,
                            const Pose2& start, const std::optional<Prior>& prior = std::nullopt,
                            const FieldRefineParams& params = {});
+
+/// Log-evidence of a fix against others far from it, at a common share of clutter: points line by
+/// line (FieldModel::line_evidence), sightings, the prior's density and the volume about the pose.
+double log_evidence_of(const FieldModel& model, const FieldScan& scan, const FieldFix& fix,
+                       double clutter);
 
 }  // namespace vigia::localization

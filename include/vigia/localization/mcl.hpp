@@ -28,6 +28,9 @@ struct MclParams {
   double bin_rad = 0.05;
   /// Resampled when the effective number of particles is below this share of them.
   double resample_share = 0.5;
+  /// Share of a cluster's spread that its particles are given anew when resampled: copies of one
+  /// particle would stay together in the directions in which odometry has no noise.
+  double kernel = 0.4;
   /// Updates between two in which the present image may suggest poses of its own …
   int check_every = 10;
   /// … to so many particles, for which the prior probability of a kidnapping is at least this, and
@@ -48,9 +51,11 @@ struct Particle {
 };
 
 /// Monte Carlo localization (Dellaert, Fox, Burgard, Thrun 1999; Minho §II.A): move the particles
-/// by odometry and its noise, weigh them by the likelihood of the observation, resample (low
-/// variance, size by KLD). Poses that the present image suggests are injected as samples of a
-/// mixture prior – mostly the particles', a little uniform – weighed by the same likelihood.
+/// by odometry and its noise, drawn with the image in view (Grisetti, Stachniss, Burgard 2007),
+/// weigh them by the likelihood of the observation, resample (low variance, size by KLD). Poses
+/// that the present image suggests are injected as samples of a mixture prior – mostly the
+/// particles', a little uniform – weighed by the same likelihood, clusters far apart by
+/// FieldModel::line_evidence().
 ///
 /// On a field that half a turn leaves as it is, likelihoods never tell a pose from its twin: the
 /// particles follow one of the two and the twin's weight is kept beside them.
@@ -71,13 +76,15 @@ class Mcl {
     Eigen::Matrix3d covariance;
   };
   void sample_uniform(int count);
-  void sample_gaussian(const Prior& prior, int count);
   Spread spread_of_all() const;
   double log_weight(const FieldScan& scan, const Pose2& pose) const;
-  void weigh(const FieldScan& scan);
-  void inject(const FieldScan& scan, const Spread& before);
+  /// Log weights of the noise's densities over the proposals'.
+  std::vector<double> draw_motion_noise(const FieldScan& scan);
+  void inject(const FieldScan& scan, const Pose2& before);
   double kidnap_prior() const;
+  void weigh_clusters(const FieldScan& scan);
   void resample();
+  void spread_copies();
   void refresh_belief();
   void watch_likelihood(const FieldScan& scan);
 
@@ -87,7 +94,9 @@ class Mcl {
   RandomStream random_;
   std::vector<Particle> particles_;
   std::vector<double> log_likelihoods_;
-  bool narrow_start_ = false;  ///< the particles still are those of a Gaussian prior
+  /// Of the moves since the last image, not yet drawn: covariance in the particle's own frame.
+  Eigen::Matrix3d motion_noise_ = Eigen::Matrix3d::Zero();
+  bool given_prior_ = false;
   double clutter_;
   std::optional<double> fast_;
   std::optional<double> slow_;
