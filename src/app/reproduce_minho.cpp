@@ -181,7 +181,7 @@ void sweep_mirror(const MinhoRun& run, const FieldMap& map) {
                            {{"errata mended", {}}, {"refined", {}}, {"MUREA, 5 cm", {}}}};
   const std::vector<FrameMethod> methods{FrameMethod::corrected, FrameMethod::tracked,
                                          FrameMethod::murea};
-  const int n = run.trials(kFrames) / 2;
+  const int n = run.trials(kFrames / 2);
   for (const double scale : {0.95, 0.97, 0.98, 0.99, 1.0, 1.01, 1.02, 1.03, 1.05}) {
     FieldFrameParams params;
     params.range_scale = scale;

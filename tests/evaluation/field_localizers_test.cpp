@@ -134,6 +134,30 @@ TEST(FieldDrive, WithAPriorTheRightHalfIsKeptOnASymmetricField) {
   }
 }
 
+TEST(FieldDrive, FalseLinesThatLastDoNotLureTheRobotAway) {
+  FieldDriveParams params;
+  params.count = 400;
+  params.frames.clutter_share = 0.55;
+  params.frames.clutter = FieldFrameParams::Clutter::straight;
+  const auto localizer = FieldLocalizer::field_grid;
+  const auto drives = drive_field_seeds(field("12x8"), params, {localizer}, 31, 2, 1);
+  const FieldDriveErrors errors = drive_errors(drives, localizer);
+  EXPECT_EQ(errors.right, 800);
+  EXPECT_LE(errors.right_flagged, 80);
+}
+
+TEST(FieldDrive, ParticlesAreAsFarOffAsTheySayAndNearTheBound) {
+  FieldDriveParams params;
+  params.count = 200;
+  const auto drives = drive_field_seeds(field("12x8"), params, {FieldLocalizer::mcl}, 41, 3, 1);
+  const FieldDriveErrors errors = drive_errors(drives, FieldLocalizer::mcl);
+  // Errors of successive frames hang together: about 60 independent ones, ± 3 standard errors.
+  EXPECT_GT(errors.nees, 0.7);
+  EXPECT_LT(errors.nees, 1.5);
+  EXPECT_GT(errors.pcrlb_ratio.value, 0.85);
+  EXPECT_LT(errors.pcrlb_ratio.value, 1.25);
+}
+
 TEST(FieldDrive, AKidnappedRobotIsFoundAgainWithinASecond) {
   FieldDriveParams params;
   params.kidnap_at = 20;

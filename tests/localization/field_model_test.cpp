@@ -77,6 +77,39 @@ TEST(FieldModel, ObservedInformationIsTheGradientsSlope) {
   }
 }
 
+TEST(FieldModel, GradientOfSightingsIsThatOfTheirLogLikelihood) {
+  const FieldModel model(field("12x8"));
+  const Pose2 pose{2.0, 1.0, 0.5};
+  FieldScan scan;
+  for (const FieldGoal& goal : model.map().goals) {
+    const Eigen::Vector2d to = goal.centre() - pose.position();
+    scan.goals.push_back({goal.colour, std::atan2(to.y(), to.x()) - pose.theta + 0.003,
+                          to.norm() - 0.05, 0.005, 0.1});
+  }
+  const FieldLinearisation at = model.linearise_sightings(scan, pose);
+  constexpr double kStep = 1e-6;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double slope = (model.log_likelihood_of_sightings(scan, moved(pose, axis, kStep)) -
+                          model.log_likelihood_of_sightings(scan, moved(pose, axis, -kStep))) /
+                         (2.0 * kStep);
+    EXPECT_NEAR(at.gradient[axis], slope, 1e-3 * std::abs(slope) + 1e-3) << axis;
+  }
+}
+
+TEST(FieldModel, HoweverManyPointsOneLineCountsForItsPriceAtMost) {
+  const FieldModel model(field("12x8"));
+  const Pose2 pose{-3.0, 3.0, 0.0};
+  std::vector<FieldPoint> halfway;
+  for (double y = -0.9; y <= 0.9; y += 0.05)  // 3 m ahead, x = 0
+    halfway.push_back(polar_point(std::atan2(y, 3.0), std::hypot(y, 3.0), 0.001, 0.02));
+  EXPECT_NEAR(model.line_evidence(halfway, pose, 0.2), model.params().line_price, 1e-9);
+  const double y = 1.0;  // the touch line, y = 4
+  std::vector<FieldPoint> both = halfway;
+  for (double x = -0.5; x <= 0.5; x += 0.02)
+    both.push_back(polar_point(std::atan2(y, x), std::hypot(x, y), 0.001, 0.02));
+  EXPECT_NEAR(model.line_evidence(both, pose, 0.2), 2.0 * model.params().line_price, 1e-6);
+}
+
 TEST(FieldModel, ClutterCostsNoMoreHoweverFarItLies) {
   const FieldModel model(field("12x8"));
   const Pose2 pose{1.0, 1.0, 0.3};
