@@ -19,6 +19,7 @@ namespace {
 constexpr double kClusterRadius_m = 0.5;
 constexpr double kClusterTurn = 0.35;
 constexpr std::size_t kMostHypotheses = 4;
+constexpr std::size_t kMostCorrected = 12;
 constexpr double kWidening = 1.5;  // of a suggestion's σ, so that its samples cover it
 constexpr double kKldQuantile = 2.326;
 const Eigen::Matrix3d kTinyVariance = 1e-10 * Eigen::Matrix3d::Identity();
@@ -26,6 +27,7 @@ constexpr double kProposalWidening = 1.5;  // of a suggestion's covariance
 constexpr double kMinInformedWeight = 0.01;
 constexpr double kWideCluster_m = 0.3;
 constexpr double kAgreeingSigmas = 4.0;
+constexpr double kDepleted = 15.0;   // effective particles
 constexpr double kUsualFall = 15.0;  // of the log-likelihood below its long-term mean, by chance
 
 double log_gaussian(const Eigen::Vector3d& off, const Eigen::Matrix3d& covariance) {
@@ -155,10 +157,10 @@ PoseHypothesis gather(const std::vector<Particle>& particles, const Pose2& centr
   return hypothesis;
 }
 
-Clusters clusters_of(const std::vector<Particle>& particles) {
+Clusters clusters_of(const std::vector<Particle>& particles, std::size_t most) {
   Clusters clusters;
   clusters.of.assign(particles.size(), kNoCluster);
-  while (clusters.all.size() < kMostHypotheses) {
+  while (clusters.all.size() < most) {
     std::size_t heaviest = particles.size();
     for (std::size_t i = 0; i < particles.size(); ++i)
       if (clusters.of[i] == kNoCluster && particles[i].weight > 0.0 &&
@@ -346,7 +348,7 @@ std::vector<double> Mcl::draw_motion_noise(const FieldScan& scan) {
   Clusters clusters;
   std::vector<std::optional<InformedNoise>> informed;
   if (params_.method == MclParams::Method::best) {
-    clusters = clusters_of(particles_);
+    clusters = clusters_of(particles_, kMostHypotheses);
     for (const PoseHypothesis& cluster : clusters.all) {
       const Eigen::Matrix3d noise = turned(motion_noise_, cluster.pose.theta) + kTinyVariance;
       const auto suggested = agreeing_suggestion(*model_, scan, cluster, noise, clutter_);
@@ -367,18 +369,13 @@ std::vector<double> Mcl::draw_motion_noise(const FieldScan& scan) {
   return log_weights;
 }
 
-double Mcl::kidnap_prior() const {
-  if (!fast_ || !slow_) return given_prior_ ? params_.kidnapped : 0.5;
-  const double fall = std::max(0.0, *slow_ - *fast_ - kUsualFall);
-  return std::clamp(1.0 - std::exp(-0.1 * fall), params_.kidnapped, 0.5);
-}
-
 /// Samples of what the image suggests, weighed as samples of the mixture prior.
 void Mcl::inject(const FieldScan& scan, const Pose2& before) {
   const auto suggestions = matcher_.match(scan);
   if (suggestions.empty()) return;
   const FieldMap& map = model_->map();
-  const double p = kidnap_prior();
+  const bool nothing_known = !fast_ && !given_prior_;
+  const double p = nothing_known ? 0.5 : params_.kidnapped;
   const double log_uniform = std::log(p / (map.length_m * map.width_m * 2.0 * kPi));
   const std::size_t own = particles_.size();
   std::vector<double> shares;
@@ -438,7 +435,7 @@ void Mcl::spread_copies() {
   // stay.
   const double h = params_.kernel;
   const double shrink = std::sqrt(1.0 - h * h);
-  const Clusters clusters = clusters_of(particles_);
+  const Clusters clusters = clusters_of(particles_, kMostHypotheses);
   std::vector<Eigen::Matrix3d> roots;
   for (const PoseHypothesis& cluster : clusters.all)
     roots.push_back(h * Eigen::Matrix3d(cluster.covariance.llt().matrixL()));
@@ -451,20 +448,24 @@ void Mcl::spread_copies() {
   }
 }
 
-void Mcl::weigh_clusters(const FieldScan& scan) {
-  const Clusters clusters = clusters_of(particles_);
+void Mcl::correct_between_clusters(const FieldScan& scan) {
+  const Clusters clusters = clusters_of(particles_, kMostCorrected);
   if (clusters.all.size() < 2) return;
-  std::vector<double> logs;
-  for (const std::size_t i : clusters.heaviest) {
-    const Pose2& pose = particles_[i].pose;
-    logs.push_back(model_->line_evidence(scan.points, pose, clutter_) -
-                   model_->log_likelihood(scan.points, pose, clutter_));
+  std::vector<std::size_t> likeliest = clusters.heaviest;
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    if (clusters.of[i] == kNoCluster) continue;
+    std::size_t& best = likeliest[clusters.of[i]];
+    if (log_likelihoods_[i] > log_likelihoods_[best]) best = i;
   }
-  const double least = *std::min_element(logs.begin(), logs.end());
   std::vector<double> corrections;
-  for (const std::size_t cluster : clusters.of)
-    corrections.push_back(cluster == kNoCluster ? least : logs[cluster]);
-  weigh_by(corrections, particles_);
+  for (const std::size_t i : likeliest) {
+    const Pose2& pose = particles_[i].pose;
+    corrections.push_back(model_->line_evidence(scan.points, pose, clutter_) -
+                          model_->log_likelihood(scan.points, pose, clutter_));
+  }
+  const double least = *std::min_element(corrections.begin(), corrections.end());
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    log_likelihoods_[i] += clusters.of[i] == kNoCluster ? least : corrections[clusters.of[i]];
 }
 
 /// Follows the likelihood of the estimate and the share of clutter.
@@ -492,21 +493,32 @@ void Mcl::update(const FieldScan& scan) {
     since_check_ = 0;
     inject(scan, before);
   }
+  if (best) correct_between_clusters(scan);
   weigh_by(log_likelihoods_, particles_);
-  if (best) weigh_clusters(scan);
   double injected = 0.0;
   for (std::size_t i = own; i < particles_.size(); ++i) injected += particles_[i].weight;
   if (model_->symmetric()) twin_weight_ += injected * (0.5 - twin_weight_);
+  const double effective = effective_number(particles_);
+  const bool resampled =
+      particles_.size() > own || effective < params_.resample_share * static_cast<double>(own);
+  if (best && effective < kDepleted) widen_depleted(scan);
   refresh_belief();
   if (best) watch_likelihood(scan);
-  if (effective_number(particles_) <
-          params_.resample_share * static_cast<double>(particles_.size()) ||
-      particles_.size() > own)
-    resample();
+  if (resampled) resample();
+}
+
+void Mcl::widen_depleted(const FieldScan& scan) {
+  // So few particles say nothing of the spread: the image's own covariance stands in for it.
+  resample();
+  const Pose2& pose = clusters_of(particles_, 1).all.front().pose;
+  const Eigen::Matrix3d information =
+      model_->linearise(scan.points, pose, clutter_).complete + Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d root = Eigen::Matrix3d(information.inverse()).llt().matrixL();
+  for (Particle& particle : particles_) particle.pose = sample_about(particle.pose, root, random_);
 }
 
 void Mcl::refresh_belief() {
-  std::vector<PoseHypothesis> clusters = by_weight(clusters_of(particles_).all);
+  std::vector<PoseHypothesis> clusters = by_weight(clusters_of(particles_, kMostHypotheses).all);
   if (model_->symmetric() && twin_weight_ > 1e-6) {
     PoseHypothesis twin = clusters.front();
     twin.pose = FieldModel::half_turned(twin.pose);

@@ -31,10 +31,10 @@ struct MclParams {
   /// Share of a cluster's spread that its particles are given anew when resampled: copies of one
   /// particle would stay together in the directions in which odometry has no noise.
   double kernel = 0.4;
-  /// Updates between two in which the present image may suggest poses of its own …
+  /// Updates between two in which the present image may suggest poses of its own, fewer when the
+  /// likelihood has fallen below its long-term mean …
   int check_every = 10;
-  /// … to so many particles, for which the prior probability of a kidnapping is at least this, and
-  /// grows when the likelihood falls below its long-term mean.
+  /// … to so many particles, for which this is the prior probability of a kidnapping.
   int injected = 200;
   double kidnapped = 1e-6;
   /// Share of the way of the likelihood's short- and long-term means to each new value.
@@ -81,10 +81,10 @@ class Mcl {
   /// Log weights of the noise's densities over the proposals'.
   std::vector<double> draw_motion_noise(const FieldScan& scan);
   void inject(const FieldScan& scan, const Pose2& before);
-  double kidnap_prior() const;
-  void weigh_clusters(const FieldScan& scan);
+  void correct_between_clusters(const FieldScan& scan);
   void resample();
   void spread_copies();
+  void widen_depleted(const FieldScan& scan);
   void refresh_belief();
   void watch_likelihood(const FieldScan& scan);
 
