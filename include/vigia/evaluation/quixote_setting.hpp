@@ -20,7 +20,7 @@ struct QuixoteSetting {
   double min_distance_m = 1.25;
   double max_distance_m = 8.0;
   double min_phi = 0.4363323129985824;  ///< 25°
-  double centring_sigma_px = 0.5;         ///< of the servo, per axis
+  double centring_sigma_px = 0.5;       ///< of the servo, per axis
 };
 
 LandmarkMap quixote_patterns(const QuixoteSetting& setting);
