@@ -36,8 +36,8 @@ TEST(FieldGrid, EquationTwoIsExactOnTheAxisOnly) {
   const FieldMap map = field("12x8");
   EXPECT_LT(direction_error(map, {1.0, 0.0, -0.4}, true), 1e-9);
   EXPECT_GT(direction_error(map, {1.0, 2.5, -0.4}, true), from_deg(5.0));
-  EXPECT_LT(direction_error(map, {1.0, 0.0, -0.4}, false), 1e-9);
-  EXPECT_GT(direction_error(map, {1.0, 0.0, 0.4}, false), from_deg(40.0));  // the sign is missing
+  EXPECT_LT(direction_error(map, {1.0, 0.0, 0.4}, false), 1e-9);
+  EXPECT_GT(direction_error(map, {1.0, 0.0, -0.4}, false), from_deg(40.0));  // the sign is missing
 }
 
 TEST(FieldGrid, DirectionByBothGoalsPlacesIsExactEverywhere) {
@@ -129,8 +129,8 @@ TEST(FieldDrive, WithAPriorTheRightHalfIsKeptOnASymmetricField) {
   const std::vector<FieldDrive> drives{drive_field(field("msl-22x14"), params, all, 4)};
   for (const FieldLocalizer localizer : all) {
     const FieldDriveErrors errors = drive_errors(drives, localizer);
-    EXPECT_EQ(errors.right, 100);
-    EXPECT_LT(errors.mean_m, 0.03);
+    EXPECT_EQ(errors.right, 100) << static_cast<int>(localizer);
+    EXPECT_LT(errors.mean_m, 0.03) << static_cast<int>(localizer);
   }
 }
 
