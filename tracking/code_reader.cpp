@@ -10,7 +10,7 @@ namespace {
 // Of the most absorbed channel, like all ratios here.
 constexpr double kBlackAbove = 0.78;     // the least absorbed channel of black
 constexpr double kGreyest = 0.75;        // the same of the black point, tinted by light
-constexpr double kFloor = 0.04;          // σ of inks and colour interpolation
+constexpr double kFloor = 0.03;          // σ of inks and colour interpolation
 constexpr double kTwinTolerance = 0.20;  // between the rings' dots of one place
 constexpr double kTwinSigmas = 4.0;
 // Of the paper's light.

@@ -90,9 +90,9 @@ TEST(CodeReader, ASecondBlackPointIsDoubtful) {
 
 TEST(CodeReader, RingsThatDisagreeAreDoubtful) {
   DotLevels dots = pattern_levels(kShown, {1.0, 1.0}, 1.0);
-  std::swap(dots[2], dots[6]);
+  std::swap(dots[2], dots[4]);
   const PatternColours colours = encode(kShown);
-  ASSERT_NE(colours.ring[1], colours.ring[5]);
+  ASSERT_NE(colours.ring[1], colours.ring[3]);
   EXPECT_EQ(read_code(dots, kMinConfidence).status, ReadStatus::doubtful);
 }
 

@@ -236,7 +236,7 @@ INSTANTIATE_TEST_SUITE_P(
                                   s.photo.light_slope = {0.2 / 150, 0.0};
                                 }},
                       TagChange{"BlurOfTwoPixels", [](TagScene& s) { s.photo.blur_px = 2.0; }},
-                      TagChange{"ASideOfTwentyPixels", [](TagScene& s) { s.side_px = 24.0; }},
+                      TagChange{"ASideOfTwentyFourPixels", [](TagScene& s) { s.side_px = 24.0; }},
                       TagChange{"AQuietZoneOfHalfAField", [](TagScene& s) { s.quiet_zone = 0.5; }},
                       TagChange{
                           "AResponseAfterTheBlur",
