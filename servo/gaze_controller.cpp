@@ -43,11 +43,12 @@ std::string_view to_string(GazeEvent event) {
 }
 
 GazeController::GazeController(HeadGeometry geometry, HeadLimits limits, ZoomCalibration zoom,
-                               GazeParams params)
+                               GazeParams params, const Ground& ground)
     : geometry_(std::move(geometry)),
       limits_(limits),
       zoom_(std::move(zoom)),
       params_(params),
+      ground_(ground),
       servo_(geometry_, params_.servo),
       zoom_control_(params_.zoom) {}
 
@@ -85,7 +86,7 @@ GazeOutput GazeController::step(const GazeInput& input) {
   if (!state_since_) state_since_ = input.now;
 
   const bool asked = state_ != GazeState::slew;
-  if (asked && input.sighting) return watch(input, *landmark);
+  if (asked && input.sighting) return track(input, *landmark);
 
   const Aim aim = aim_for(input, *landmark);
   if (state_ == GazeState::track) return miss(input, aim);
@@ -106,7 +107,7 @@ Eigen::Vector3d GazeController::landmark_in_base(const GazeInput& input,
                                                  const Landmark& landmark) const {
   // What the camera saw is nearer to the truth than what the belief says.
   if (seen_at_r_) return *seen_at_r_;
-  return to_isometry(input.belief.pose).inverse() * landmark.centre_w();
+  return ground_.place(input.belief.pose).inverse() * landmark.centre_w();
 }
 
 /// The same direction within the head's range: the pan nearest to where the head is, and never
@@ -137,9 +138,8 @@ double GazeController::arrival_time(const GazeInput& input, const HeadAngles& ai
 
 double GazeController::held_radius(double radius_px, const Intrinsics& intrinsics) const {
   if (!active().zoom_mm) return active().radius_px;
-  return std::clamp(
-      radius_px, params_.planned_least_px,
-      std::max(params_.planned_most * half_image(intrinsics), params_.planned_least_px));
+  return std::clamp(radius_px, params_.planned_min_px,
+                    std::max(params_.planned_max * half_image(intrinsics), params_.planned_min_px));
 }
 
 GazeOutput GazeController::rest(const GazeInput& input) const {
@@ -168,8 +168,7 @@ double GazeController::wanted_focal(const GazeInput& input, const Landmark& land
   const double lever = across.dot(Eigen::Vector2d(-p_r.y(), p_r.x()));
   const Eigen::RowVector3d bearing(-across_w.x(), -across_w.y(), -lever);
   const double variance = (bearing * input.belief.covariance * bearing.transpose()).value();
-  const double sigma =
-      std::hypot(std::sqrt(std::max(variance, 0.0)), from_deg(params_.look_angle_deg));
+  const double sigma = std::hypot(std::sqrt(std::max(variance, 0.0)), params_.look_angle);
 
   const double planned = active().zoom_mm ? zoom_.at(*active().zoom_mm).px : 0.0;
   const double wanted_px = held_radius(planned * radius / range, input.intrinsics);
@@ -185,7 +184,7 @@ GazeController::Aim GazeController::aim_for(const GazeInput& input,
   Aim aim;
   aim.p_r = landmark_in_base(input, landmark);
   aim.now = reachable(aim_at(geometry_, aim.p_r), input.head.angles);
-  // Of the aim, not of where the head is: on its way the head may have the landmark behind it.
+  // Of the aim, not of where the head is: during a slew the head may have the landmark behind it.
   const Eigen::Vector3d p_c = camera_in_base(geometry_, aim.now).inverse() * aim.p_r;
   if (p_c.z() > 0.0) aim.forward = servo_.compensation(p_c, aim.now, input.base);
 
@@ -273,7 +272,7 @@ GazeOutput GazeController::search(const GazeInput& input, const Landmark& landma
   return output;
 }
 
-GazeOutput GazeController::watch(const GazeInput& input, const Landmark& landmark) {
+GazeOutput GazeController::track(const GazeInput& input, const Landmark& landmark) {
   GazeOutput output;
   last_seen_ = input.now;
   if (state_ != GazeState::track) {
@@ -285,7 +284,7 @@ GazeOutput GazeController::watch(const GazeInput& input, const Landmark& landmar
   }
 
   const Eigen::Isometry3d rMc = camera_in_base(geometry_, input.head.angles);
-  const Eigen::Isometry3d rMw = to_isometry(input.belief.pose).inverse();
+  const Eigen::Isometry3d rMw = ground_.place(input.belief.pose).inverse();
   // However wrong the belief, what is seen is not within the camera.
   const double range = std::max((rMw * landmark.centre_w() - rMc.translation()).norm(), 0.1);
   const Eigen::Vector2d xy = unproject(input.intrinsics, input.sighting->uv);

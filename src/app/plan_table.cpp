@@ -7,12 +7,20 @@
 #include <nlohmann/json.hpp>
 
 #include "vigia/core/error.hpp"
-#include "vigia/localization/points_information.hpp"
+#include "vigia/localization/landmark_information.hpp"
 #include "vigia/planner/look_policy.hpp"
 #include "vigia/report/plan_picture.hpp"
 
 namespace vigia::app {
 namespace {
+
+localization::LandmarkInformationParams information_params(const mission::MissionSetup& setup) {
+  localization::LandmarkInformationParams params;
+  params.sensor = setup.noise.sensor;
+  params.radius_px = setup.look.radius_px;
+  params.fill = setup.look.fill;
+  return params;
+}
 
 /// What a policy is asked with, at a control position.
 class PolicyAtPositions {
@@ -22,10 +30,7 @@ class PolicyAtPositions {
       : setup_(setup),
         visibility_(visibility),
         head_(head),
-        information_(localization::DiscInformation(head.geometry, head.zoom,
-                                                   {setup.ekf.sensor, setup.look.radius_px}),
-                     localization::PointsInformation(head.geometry, head.zoom,
-                                                     {setup.ekf.sensor, setup.look.fill})),
+        information_(head.geometry, head.zoom, information_params(setup), head.ground),
         policy_(planner::make_look_policy(
             policy,
             {setup.look.fixed_landmark, RandomStream(setup.seed, "look policy"),
@@ -43,7 +48,7 @@ class PolicyAtPositions {
     const std::vector<LandmarkId> excluded;
     const auto choice = policy_->choose({Stamp{}, belief, head, position.station_m, setup_.path,
                                          setup_.world.landmarks, visibility_, information_,
-                                         excluded, head_, 0.0, false, setup_.ekf.odometry});
+                                         excluded, head_, 0.0, false, setup_.noise.odometry});
     return choice ? std::optional(choice->landmark) : std::nullopt;
   }
 
@@ -94,9 +99,10 @@ PlanTable make_plan(const mission::MissionSetup& setup, const std::string& polic
     throw InputError("--policy fixed: the mission needs the key planner.fixed_landmark");
   const auto& robot = setup.robot.robot;
   const planner::Visibility visibility(setup.world.plan, robot.head, robot.head_limits,
-                                       setup.look.visibility);
+                                       setup.look.visibility, setup.world.ground);
   const planner::HeadModel head{robot.head,           robot.head_limits,  setup.robot.zoom,
-                                setup.look.radius_px, setup.look.dwell_s, setup.look.fill};
+                                setup.look.radius_px, setup.look.dwell_s, setup.look.fill,
+                                setup.world.ground};
   planner::FuzzySupervisors supervisors(setup.look.rules);
   const auto plan = planner::plan_perception(setup.path, setup.world.landmarks, visibility, head,
                                              supervisors, setup.look.perception);

@@ -1,4 +1,5 @@
 #include "commands.hpp"
+#include "usage_mistake.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -13,9 +14,11 @@
 
 #include "vigia/core/error.hpp"
 #include "vigia/core/output_folder.hpp"
+#include "vigia/core/suggestion.hpp"
 #include "vigia/imaging/image_frame.hpp"
 #include "vigia/tracking/picture_run.hpp"
 #include "vigia/tracking/point_picture_run.hpp"
+#include "vigia/tracking/trackers.hpp"
 
 namespace vigia::app {
 namespace {
@@ -64,7 +67,7 @@ struct PictureOutcome {
 class Pictures {
  public:
   explicit Pictures(const std::string& tracker) {
-    if (tracker == "pattern" || tracker == "tag")
+    if (find_name(tracking::trackers(), tracker)->make_points != nullptr)
       points_.emplace(tracker);
     else
       discs_.emplace(tracker);
@@ -186,8 +189,9 @@ int track(const TrackOptions& options) {
 void add_track(CLI::App& app, int& status) {
   auto options = std::make_shared<TrackOptions>();
   CLI::App* command = app.add_subcommand("track", "Run a tracker on real pictures or a video");
-  command->add_option("--tracker", options->tracker, "disc, ellipse, correlation, pattern or tag")
-      ->check(CLI::IsMember({"disc", "ellipse", "correlation", "pattern", "tag"}))
+  const auto trackers = names_of(tracking::trackers());
+  command->add_option("--tracker", options->tracker, joined(trackers))
+      ->check(one_of(trackers))
       ->capture_default_str();
   command->add_option("inputs", options->inputs, "Pictures, folders of pictures, or a video")
       ->required();

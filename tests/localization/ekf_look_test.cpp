@@ -37,8 +37,8 @@ Look near_look() {
   const LookBias bias{0.004, -0.003, 0.002};
   for (int i = 0; i < kImages; ++i) {
     const Stamp now = Stamp::from_seconds(kTick * i);
-    const SensorSnapshot sensor = test::aimed_sensor(look.landmark, {}, pose, bias, 1, now);
-    look.images.push_back(test::observe(look.landmark, sensor, {}, pose, bias, 0.0, 0.01, random));
+    const Shot shot = test::aimed_shot(look.landmark, {}, pose, bias, 1, now);
+    look.images.push_back(test::observe(look.landmark, shot, {}, pose, bias, 0.0, 0.01, random));
     const Stamp next = Stamp::from_seconds(kTick * (i + 1));
     look.measured.push_back(arc_increment(0.3, 0.5, now, next));
     pose = move(pose, arc_increment(0.32, 0.53, now, next));
@@ -53,7 +53,7 @@ class BatchLook {
  public:
   BatchLook(const Look& look, const EkfParams& params) : look_(look), params_(params) {}
 
-  EkfState solve() const {
+  LookState solve() const {
     Eigen::VectorXd unknown = Eigen::VectorXd::Zero(6 + 3 * (kImages - 1));
     Eigen::MatrixXd information;
     for (int i = 0; i < 20; ++i) {
@@ -66,7 +66,7 @@ class BatchLook {
       return trajectory(x).back();
     };
     const Eigen::MatrixXd J = derivative(end, unknown);
-    EkfState state;
+    LookState state;
     state.mean = trajectory(unknown).back();
     state.covariance = J * information.ldlt().solve(J.transpose());
     return state;
@@ -117,7 +117,7 @@ class BatchLook {
   }
 
   Eigen::Vector3d image_residual(const Vector6& x, const EllipseObservation& image) const {
-    const auto predicted = predict_disc(look_.landmark, image.sensor, {},
+    const auto predicted = predict_disc(look_.landmark, image.shot, {},
                                         Pose2::from_vector(x.head<3>()), {x(3), x(4), x(5)});
     const Eigen::Vector3d floor(params_.centre_floor_px, params_.centre_floor_px,
                                 params_.size_floor);
@@ -140,7 +140,7 @@ TEST(EkfLook, ALookEndsWhereALeastSquaresSolutionOfAllItsImagesEnds) {
     ASSERT_EQ(ekf.update(look.images[k]).status, UpdateStatus::fused) << i;
     if (k < look.measured.size()) ekf.predict(look.measured[k]);
   }
-  const EkfState batch = BatchLook(look, params).solve();
+  const LookState batch = BatchLook(look, params).solve();
   EXPECT_LT((ekf.state().mean - batch.mean).cwiseAbs().maxCoeff(), 1e-6);
   EXPECT_LT((ekf.state().covariance - batch.covariance).norm(), 1e-3 * batch.covariance.norm());
 }

@@ -24,17 +24,17 @@ Eigen::Isometry3d on_the_ramp() {
 PointsObservation seen_from(const Eigen::Isometry3d& wMr, const Landmark& landmark,
                             const LookBias& bias, double sigma, RandomStream& random,
                             Stamp stamp = {}) {
-  SensorSnapshot sensor;
-  sensor.stamp = stamp;
-  sensor.look = 1;
+  Shot shot;
+  shot.stamp = stamp;
+  shot.look = 1;
   const HeadAngles aim = aim_at(kHead, wMr.inverse() * landmark.centre_w());
-  sensor.head = {aim.pan - bias.pan, aim.tilt - bias.tilt};
-  sensor.intrinsics = test::zoom_calibration().at(30.0);
-  return test::observe_points(landmark, sensor, kHead, wMr, bias, 0.0, sigma, random);
+  shot.head = {aim.pan - bias.pan, aim.tilt - bias.tilt};
+  shot.model = test::zoom_calibration().at(30.0);
+  return test::observe_points(landmark, shot, kHead, wMr, bias, 0.0, sigma, random);
 }
 
 PatternFixLocalizer localizer(const PatternFixParams& params = {}) {
-  return PatternFixLocalizer(LandmarkMap({kFixPattern}), kHead, params);
+  return PatternFixLocalizer(LandmarkMap({kFixPattern}), {head_rig(kHead), {}}, params);
 }
 
 TEST(PatternFix, OneImageOnARampGivesTheWholePose) {
@@ -65,7 +65,7 @@ TEST(PatternFix, ItsCovarianceIsThatOfItsErrorsWithHeadAndFocalErrorIncluded) {
     LookBias bias = test::draw_bias(random, params.sensor);
     bias.pan += params.sensor.reading_angle * random.normal();
     bias.tilt += params.sensor.reading_angle * random.normal();
-    fix.reset({}, {});
+    fix.reset({}, Prior{});
     PointsObservation seen = seen_from(on_the_ramp(), kFixPattern, bias, 0.2, random);
     ASSERT_NE(fix.update(seen).status, UpdateStatus::unsupported);
     const SpatialPose& pose = *fix.belief().in_space;
@@ -104,7 +104,7 @@ TEST(PatternFix, ALateImageIsMovedToThePresent) {
   const auto drive = [](double from, double to) {
     return arc_increment(0.3, 0.4, Stamp::from_seconds(from), Stamp::from_seconds(to));
   };
-  fix.reset({}, {});
+  fix.reset({}, Prior{});
   fix.predict(drive(0.0, 0.2));
   fix.predict(drive(0.2, 0.4));
   const auto late =
@@ -129,7 +129,7 @@ TEST(PatternFix, ALateImageIsMovedToThePresent) {
 TEST(PatternFix, OlderThanItsHistoryIsTooLate) {
   RandomStream random(1, "unused");
   PatternFixLocalizer fix = localizer();
-  fix.reset({}, {});
+  fix.reset({}, Prior{});
   for (int i = 0; i < 30; ++i)
     fix.predict({Stamp::from_seconds(0.1 * i), Stamp::from_seconds(0.1 * (i + 1)), 0, 0.01, 0});
   const auto old = seen_from(on_the_ramp(), kFixPattern, {}, 0.0, random, Stamp::from_seconds(0.5));
@@ -140,7 +140,7 @@ TEST(PatternFix, CountsWhatItCannotUse) {
   RandomStream random(1, "unused");
   const Landmark tag = test::tag(7, 6.0, 2.9, 2.15, 180.0);
   const Landmark frontal = test::pattern(8, 6.0, 2.4, 1.3, 180.0);
-  PatternFixLocalizer fix(LandmarkMap({kFixPattern, tag, frontal}), kHead, {});
+  PatternFixLocalizer fix(LandmarkMap({kFixPattern, tag, frontal}), {head_rig(kHead), {}}, {});
   EXPECT_EQ(fix.update(EllipseObservation{}).status, UpdateStatus::unsupported);
   const Eigen::Isometry3d wMr = to_isometry({3.2, 2.4, 0.1});
   EXPECT_EQ(fix.update(seen_from(wMr, tag, {}, 0.0, random)).status, UpdateStatus::unsupported);

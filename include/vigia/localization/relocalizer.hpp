@@ -6,10 +6,11 @@
 
 #include "vigia/core/belief.hpp"
 #include "vigia/core/floor_plan.hpp"
-#include "vigia/core/head.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/core/observation.hpp"
+#include "vigia/core/rig.hpp"
 #include "vigia/core/sensor_noise.hpp"
+#include "vigia/localization/measurement_model.hpp"
 
 namespace vigia::localization {
 
@@ -42,7 +43,7 @@ struct Sweep {
   /// The discs, at most a few per landmark. The biases of readings are drawn anew for each look.
   std::vector<EllipseObservation> sightings;
   /// Every direction that was searched, with a find or without one.
-  std::vector<SensorSnapshot> views;
+  std::vector<Shot> views;
 };
 
 enum class RelocalizationStatus {
@@ -63,7 +64,7 @@ struct Relocalization {
 /// landmarks, and discs have a front.
 class Relocalizer {
  public:
-  Relocalizer(LandmarkMap map, FloorPlan plan, const HeadGeometry& geometry,
+  Relocalizer(LandmarkMap map, FloorPlan plan, const RigOnGround& on_ground,
               const RelocalizerParams& params);
 
   /// With a @p prior one sighting is enough, and poses it holds unlikely weigh less; without, at
@@ -71,7 +72,7 @@ class Relocalizer {
   Relocalization solve(const Sweep& sweep, const std::optional<Prior>& prior = std::nullopt) const;
 
  private:
-  struct Match {
+  struct Sighting {
     const EllipseObservation* sighting;
     const Landmark* landmark;
   };
@@ -82,31 +83,29 @@ class Relocalizer {
   };
   struct Hypothesis {
     Fit fit;
-    std::vector<Match> matches;
+    std::vector<Sighting> matches;
     double log_weight = 0.0;
   };
 
   std::vector<Pose2> seeds(const std::vector<EllipseObservation>& sightings,
                            const std::optional<Prior>& prior) const;
-  std::optional<Fit> refine(const Pose2& start, const std::vector<Match>& matches,
+  std::optional<Fit> refine(const Pose2& start, const std::vector<Sighting>& matches,
                             const std::optional<Prior>& prior) const;
-  std::vector<Match> explain(const Fit& fit,
-                             const std::vector<EllipseObservation>& sightings) const;
+  std::vector<Sighting> explain(const Fit& fit,
+                                const std::vector<EllipseObservation>& sightings) const;
   std::optional<Hypothesis> hypothesis(const Pose2& seed, const Sweep& sweep,
                                        const std::vector<EllipseObservation>& sightings,
                                        const std::optional<Prior>& prior) const;
-  static std::set<LandmarkId> landmarks_of(const std::vector<Match>& matches);
-  bool plausible(const Match& match, const Pose2& pose) const;
+  static std::set<LandmarkId> landmarks_of(const std::vector<Sighting>& matches);
+  bool plausible(const Sighting& match, const Pose2& pose) const;
   int missed(const Hypothesis& hypothesis, const Sweep& sweep) const;
-  bool should_be_seen(const Landmark& landmark, const Pose2& pose,
-                      const SensorSnapshot& view) const;
-  Eigen::Matrix3d pixel_covariance(const EllipseObservation& sighting) const;
+  bool should_be_seen(const Landmark& landmark, const Pose2& pose, const Shot& view) const;
+  std::optional<Linearised<3>> linearised(const Sighting& match, const Pose2& pose) const;
 
-  LandmarkMap map_;
-  FloorPlan plan_;
-  HeadGeometry geometry_;
   RelocalizerParams params_;
-  double gate_;
+  MeasurementModel model_;
+  FloorPlan plan_;
+  Eigen::Matrix3d biases_;  ///< covariance of a look's biases
 };
 
 }  // namespace vigia::localization
