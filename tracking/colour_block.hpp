@@ -29,8 +29,8 @@ class ColourBlock {
   std::vector<vpRGBa> pixels_;
 };
 
-/// Means over squares of two by two pixels: half the size, a quarter of the noise's variance. An odd
-/// last row or column is left out.
+/// Means over squares of two by two pixels: half the size, a quarter of the noise's variance. An
+/// odd last row or column is left out.
 void halve(vpImage<unsigned char>& image, vpImage<unsigned char>& out);
 
 }  // namespace vigia::tracking
