@@ -2,6 +2,8 @@
 
 #include "simd.hpp"
 
+#include <cmath>
+
 namespace vigia::sim {
 namespace {
 
@@ -16,11 +18,70 @@ void bend(float x0, float dx, float y, float kdu, int u, int count, float* __res
   }
 }
 
+struct OmniRow {
+  float x0, dx, y, xi, min_z;
+};
+
+/// Mei & Rives eq. 4.
+VIGIA_PIXEL_LOOP
+void lift_to_sphere(const OmniRow& row, int u, int count, float* __restrict out_x,
+                    float* __restrict out_y, float* __restrict out_z) {
+  const OmniRow k = row;
+  for (int i = 0; i < count; ++i) {
+    const float x = k.x0 + static_cast<float>(u + i) * k.dx;
+    const float r2 = x * x + k.y * k.y;
+    const float root2 = 1.0F + (1.0F - k.xi * k.xi) * r2;
+    const float root = std::sqrt(root2 > 0.0F ? root2 : 0.0F);
+    const float eta = (k.xi + root) / (1.0F + r2);
+    const bool seen = (root2 >= 0.0F) & (eta - k.xi >= k.min_z);
+    out_x[i] = seen ? eta * x : 0.0F;
+    out_y[i] = seen ? eta * k.y : 0.0F;
+    out_z[i] = seen ? eta - k.xi : 0.0F;
+  }
+}
+
+struct RowRays {
+  int u, v, count;
+  float *x, *y, *z;
+
+  void operator()(const Intrinsics& k) const {
+    bend(static_cast<float>(-k.u0 / k.px), static_cast<float>(1.0 / k.px),
+         static_cast<float>((v - k.v0) / k.py), static_cast<float>(k.kdu), u, count, x, y);
+  }
+  void operator()(const UnifiedOmni& k) const {
+    lift_to_sphere({static_cast<float>(-k.u0 / k.px), static_cast<float>(1.0 / k.px),
+                    static_cast<float>((v - k.v0) / k.py), static_cast<float>(k.xi),
+                    static_cast<float>(min_z(k))},
+                   u, count, x, y, z);
+  }
+};
+
+struct PointRay {
+  const Eigen::Vector2d& uv;
+
+  Eigen::Vector3d operator()(const Intrinsics& k) const { return unproject(k, uv).homogeneous(); }
+  Eigen::Vector3d operator()(const UnifiedOmni& k) const {
+    return ray(CameraModel{k}, uv).value_or(Eigen::Vector3d::Zero());
+  }
+};
+
+struct Resolution {
+  double operator()(const Intrinsics& k) const { return k.px; }
+  double operator()(const UnifiedOmni& k) const { return std::abs(k.px) / (1.0 + k.xi); }
+};
+
 }  // namespace
 
-void row_rays(const Intrinsics& k, int u, int v, int count, float* x, float* y) {
-  bend(static_cast<float>(-k.u0 / k.px), static_cast<float>(1.0 / k.px),
-       static_cast<float>((v - k.v0) / k.py), static_cast<float>(k.kdu), u, count, x, y);
+void row_rays(const CameraModel& model, int u, int v, int count, float* x, float* y, float* z) {
+  std::visit(RowRays{u, v, count, x, y, z}, model);
+}
+
+Eigen::Vector3d point_ray(const CameraModel& model, const Eigen::Vector2d& uv) {
+  return std::visit(PointRay{uv}, model);
+}
+
+double resolution_px(const CameraModel& model) {
+  return std::visit(Resolution{}, model);
 }
 
 }  // namespace vigia::sim

@@ -38,10 +38,16 @@ EventKind event_of(Outcome outcome) {
   return EventKind::stuck;
 }
 
-ExposureTruth truth_of(const ExposedFrame& exposure) {
+/// A camera that does not move has no looks and none of their errors, a lens that does not zoom no
+/// error of its focal length that changes with them.
+ExposureTruth truth_of(const ExposedFrame& exposure, const Camera& camera) {
   const sim::RobotTruth& truth = exposure.truth;
-  const HeadAngles& angle = truth.look_angle_error;
-  return {truth.stamp, truth.pose, {angle.pan, angle.tilt, truth.look_log_focal_error}};
+  ExposureTruth known{truth.stamp, truth.pose, {}};
+  if (exposure.shot.look == 0) return known;
+  const bool zooms = std::holds_alternative<ZoomCalibration>(camera.optics);
+  known.bias = {truth.look_angle_error.pan, truth.look_angle_error.tilt,
+                zooms ? truth.look_log_focal_error : 0.0};
+  return known;
 }
 
 }  // namespace
@@ -184,10 +190,11 @@ std::vector<Observation> Loop::observe(const std::vector<Delivery>& deliveries) 
   for (const Delivery& delivery : deliveries) {
     if (!delivery.present) continue;
     const Stamp exposed = delivery.exposure->shot.stamp;
+    const Camera& camera = rig_.at(delivery.exposure->shot.camera);
     auto seen =
         delivery.eye->observe(delivery.capture(), motion_.belief_at(exposed, belief()), request);
     tick_.estimator.truth->exposures.insert(tick_.estimator.truth->exposures.end(), seen.size(),
-                                            truth_of(*delivery.exposure));
+                                            truth_of(*delivery.exposure, camera));
     std::move(seen.begin(), seen.end(), std::back_inserter(observations));
   }
   tick_.timing.track += stopwatch.elapsed_ms();

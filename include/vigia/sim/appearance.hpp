@@ -11,15 +11,27 @@ namespace vigia::sim {
 /// the disc: only the plate round it makes it no landmark.
 enum class ClutterKind { blob, ellipse, ring, square, half_disc, disc };
 
-/// One dark mark on a face. size_m is half its greatest width.
+/// What carries a mark.
+enum class ClutterPlace { face, floor, ceiling };
+
+/// One dark mark. size_m is half its greatest width.
 struct Clutter {
   ClutterKind kind = ClutterKind::blob;
   Eigen::Vector3d centre_w = Eigen::Vector3d::Zero();
-  double normal_yaw = 0.0;  ///< outward normal in the floor plane, rad; unused on the floor
-  bool on_floor = false;
+  ClutterPlace place = ClutterPlace::face;
+  double normal_yaw = 0.0;  ///< of a face: outward normal in the floor plane, rad
   double size_m = 0.05;
   double turn = 0.0;  ///< about the normal, rad
   double grey = 60.0;
+};
+
+/// A straight line painted on the floor or the ceiling, from end to end.
+struct Stripe {
+  Eigen::Vector2d from = Eigen::Vector2d::Zero();  ///< m
+  Eigen::Vector2d to = Eigen::Vector2d::Zero();
+  double width_m = 0.05;
+  double grey = 235.0;
+  bool on_ceiling = false;
 };
 
 /// How the sheet round a disc is cut.
@@ -40,6 +52,7 @@ struct Appearance {
   double plate_factor = 1.6;  ///< half the sheet's width over the disc's radius
   PlateShape plate_shape = PlateShape::square;
   double clutter_per_m2 = 0.25;  ///< marks scattered over walls and floor
+  std::vector<Stripe> stripes;
   std::vector<Clutter> clutter;  ///< named in the file and drawn at random
 };
 
