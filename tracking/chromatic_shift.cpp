@@ -1,5 +1,7 @@
 #include "chromatic_shift.hpp"
 
+#include <algorithm>
+
 #include <Eigen/Cholesky>
 
 namespace vigia::tracking {
@@ -42,6 +44,14 @@ ChromaticShift estimate_shift(const std::vector<DotPulls>& dots, const Chromatic
   const Eigen::LLT<Eigen::Matrix4d> factors(information);
   out.shift = factors.solve(right);
   out.covariance = factors.solve(Eigen::Matrix4d::Identity());
+  return out;
+}
+
+ChromaticShift shrunk(const ChromaticShift& estimate) {
+  const double squares = estimate.shift.dot(estimate.covariance.llt().solve(estimate.shift));
+  constexpr double kSpare = 2.0;  // four components less two
+  ChromaticShift out = estimate;
+  out.shift *= std::max(0.0, 1.0 - kSpare / std::max(squares, 1e-9));
   return out;
 }
 

@@ -34,4 +34,9 @@ struct ChromaticShift {
 /// The shift common to @p dots, by least squares on top of @p prior.
 ChromaticShift estimate_shift(const std::vector<DotPulls>& dots, const ChromaticShift& prior);
 
+/// The estimate drawn towards no shift at all, as lenses mostly have: James and Stein's, positive
+/// part, whose mean square against the covariance is below the estimate's own for every shift. The
+/// covariance stays, as a bound.
+ChromaticShift shrunk(const ChromaticShift& estimate);
+
 }  // namespace vigia::tracking

@@ -139,6 +139,20 @@ TEST(PatternPhotos, ADotWhereTheSheetIsWhiteMakesItNoPattern) {
     EXPECT_FALSE(feature.code);
 }
 
+TEST(PatternPhotos, ACentreThatIsLargerThanThePlaneHasItIsNotRead) {
+  RandomStream random(87, "sticker");
+  std::vector<PrintedDisc> discs;
+  const Inks inks = strong_inks();
+  for (const PatternDot& dot : pattern_dots(shape_of(kPrinted))) {
+    const bool centre = dot.label == 0;
+    discs.push_back({dot.centre_l.x(), dot.centre_l.y(), dot.radius_m * (centre ? 1.12 : 1.0), 0.0,
+                     inks[centre ? 1U : static_cast<std::size_t>(dot.colour)]});
+  }
+  for (const PointsFeature& feature :
+       read_sheet(print_of_discs(kSheet, discs), 220.0, 0.2, ordinary_photo(), random))
+    EXPECT_FALSE(feature.code);
+}
+
 TEST(PatternPhotos, CentresAreWhereGreenHasThemUnderAChromaticShift) {
   constexpr int kPhotos = 8;
   RandomStream random(86, "chromatic shift");

@@ -202,6 +202,27 @@ class Jitter {
   std::uint64_t state_;
 };
 
+/// What is seen at a point of the sheet's plane; nothing beside it.
+std::optional<cv::Vec3f> ink_of(const Print& print, const std::vector<Sticker>& stickers, double x,
+                                double y) {
+  auto ink = print(x, y);
+  for (const Sticker& sticker : stickers) {
+    const double dx = x - sticker.centre_l.x();
+    const double dy = y - sticker.centre_l.y();
+    const double r = sticker.round ? std::hypot(dx, dy) : std::max(std::abs(dx), std::abs(dy));
+    if (r <= sticker.radius_m) ink = sticker.ink;
+  }
+  return ink;
+}
+
+/// Whether one of the eight neighbours differs.
+bool on_edge(const cv::Mat3f& light, int x, int y) {
+  for (int v = std::max(0, y - 1); v <= std::min(light.rows - 1, y + 1); ++v)
+    for (int u = std::max(0, x - 1); u <= std::min(light.cols - 1, x + 1); ++u)
+      if (light(v, u) != light(y, x)) return true;
+  return false;
+}
+
 }  // namespace
 
 Inks strong_inks() {
@@ -358,22 +379,27 @@ void lay_sheet(cv::Mat3f& wall, int fine, const SheetView& view, const Print& pr
       (lHi * Eigen::Vector3d(view.iHl.col(2).hnormalized().homogeneous())).z() > 0 ? 1.0 : -1.0;
   Jitter jitter(random.engine()());
   const double step = 1.0 / fine;
+  const auto ink_at = [&](double x, double y) -> std::optional<cv::Vec3f> {
+    const Eigen::Vector3d p = lHi * Eigen::Vector3d(x * step - 0.5, y * step - 0.5, 1.0);
+    if (sign * p.z() <= 0.0) return std::nullopt;
+    return ink_of(print, stickers, p.x() / p.z(), p.y() / p.z());
+  };
+  const cv::Mat3f behind = wall.clone();
+  for (int y = 0; y < wall.rows; ++y)
+    for (int x = 0; x < wall.cols; ++x)
+      if (const auto ink = ink_at(x + 0.5, y + 0.5)) wall(y, x) = *ink;
+  // One sample a cell would move edges by more than a camera's noise does.
+  constexpr int kSamples = 6;
+  const cv::Mat3f once = wall.clone();
   for (int y = 0; y < wall.rows; ++y)
     for (int x = 0; x < wall.cols; ++x) {
-      const double u = (x + jitter()) * step - 0.5;
-      const double v = (y + jitter()) * step - 0.5;
-      const Eigen::Vector3d p = lHi * Eigen::Vector3d(u, v, 1.0);
-      if (sign * p.z() <= 0.0) continue;
-      const double px = p.x() / p.z();
-      const double py = p.y() / p.z();
-      auto ink = print(px, py);
-      for (const Sticker& sticker : stickers) {
-        const double dx = px - sticker.centre_l.x();
-        const double dy = py - sticker.centre_l.y();
-        const double r = sticker.round ? std::hypot(dx, dy) : std::max(std::abs(dx), std::abs(dy));
-        if (r <= sticker.radius_m) ink = sticker.ink;
-      }
-      if (ink) wall(y, x) = *ink;
+      if (!on_edge(once, x, y)) continue;
+      cv::Vec3f sum(0.0F, 0.0F, 0.0F);
+      for (int j = 0; j < kSamples; ++j)
+        for (int i = 0; i < kSamples; ++i)
+          sum += ink_at(x + (i + jitter()) / kSamples, y + (j + jitter()) / kSamples)
+                     .value_or(behind(y, x));
+      wall(y, x) = sum * (1.0F / (kSamples * kSamples));
     }
 }
 
