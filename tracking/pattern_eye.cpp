@@ -18,13 +18,18 @@ constexpr double kSmallDot = 2.0;   // px, least semi-minor axis of a blob
 constexpr double kFlattest = 0.25;  // b/a of a dot
 constexpr int kRowStep = 3;         // rows from one that the blob finder scans to the next
 constexpr double kMaxGrowth = 0.3;  // of log size, of a dot against its prediction
-// By how many px a dot's rim may lie further out than the median of the others': blur and a
-// camera's response move all rims about alike. Of 1836 dots of ordinary and hard photographs, 1 in
-// 1000 is at the limit.
-constexpr double kGrowthFloor = 0.1;
-constexpr double kGrowthByBlur = 0.15;  // of the blur
-constexpr double kGrowthBySize = 0.02;  // of the dot's size
-constexpr double kMaxStretch = 1.4;     // of a dot along one axis against the other
+// The unit by which dots are compared with each other, px: blur and a camera's response move all
+// rims about alike.
+constexpr double kUnitFloor = 0.1;
+constexpr double kUnitByBlur = 0.15;  // of the blur
+constexpr double kUnitBySize = 0.02;  // of the dot's size
+// How far a dot's rim may lie out or in against the median of all, units. The centre-point is
+// larger and has no twin: blur draws it in, and only a sticker makes it larger or moves it.
+constexpr double kMaxGrowthUnits = 1.0;
+constexpr double kMaxCentreOut = 0.3;
+constexpr double kMaxCentreIn = 1.3;
+constexpr double kMaxCentreOff = 0.6;
+constexpr double kMaxStretch = 1.4;  // of a dot along one axis against the other
 // By how much the channels may move against each other from frame to frame (px): at rest, by focus
 // and temperature, and with each pixel that the pattern moves over the image.
 constexpr double kShiftDrift = 0.002;
@@ -80,6 +85,13 @@ double growth_of(const EllipseShape& shape, const EllipseShape& expected) {
   const Ellipse seen = ellipse_of(shape);
   const Ellipse plane = ellipse_of(expected);
   return (seen.a * seen.b - plane.a * plane.b) / (0.5 * (seen.a + seen.b + plane.a + plane.b));
+}
+
+/// Whether a dot's growth against the median and its offset from the plane, in units, are those of
+/// a bare dot.
+bool is_bare(double growth, double offset, bool centre) {
+  if (!centre) return std::abs(growth) < kMaxGrowthUnits;
+  return growth < kMaxCentreOut && growth > -kMaxCentreIn && offset < kMaxCentreOff;
 }
 
 std::vector<DotPulls> pulls_of(const PatternSight& sight) {
@@ -238,9 +250,9 @@ void PatternEye::hide_misfits(PatternSight& sight) const {
   for (std::size_t i = 0; i < places.size(); ++i) {
     DotFit& dot = sight.dots[i];
     if (dot.status != DotStatus::whole) continue;
-    const double limit =
-        kGrowthFloor + kGrowthByBlur * dot.blur + kGrowthBySize * size_of(dot.shape);
-    if (std::abs(growths[i] - *middle) > limit ||
+    const double unit = kUnitFloor + kUnitByBlur * dot.blur + kUnitBySize * size_of(dot.shape);
+    const double offset = (dot.shape.centre - sight.map(places[i])).norm();
+    if (!is_bare((growths[i] - *middle) / unit, offset / unit, i == 0) ||
         !fits(dot, sight.map, places[i], dot_radius(sight.shape, static_cast<int>(i))))
       dot.status = DotStatus::hidden;
   }
