@@ -23,6 +23,7 @@ constexpr double kMaxGrowth = 0.3;  // of log size, of a dot against its predict
 constexpr double kUnitFloor = 0.1;
 constexpr double kUnitByBlur = 0.15;  // of the blur
 constexpr double kUnitBySize = 0.02;  // of the dot's size
+constexpr double kUnitBySigma = 4.0;  // of the stated error of its centre, an axis
 // How far a dot's rim may lie out or in against the median of all, units. The centre-point is
 // larger and has no twin: blur draws it in, and only a sticker makes it larger or moves it.
 constexpr double kMaxGrowthUnits = 1.0;
@@ -250,7 +251,8 @@ void PatternEye::hide_misfits(PatternSight& sight) const {
   for (std::size_t i = 0; i < places.size(); ++i) {
     DotFit& dot = sight.dots[i];
     if (dot.status != DotStatus::whole) continue;
-    const double unit = kUnitFloor + kUnitByBlur * dot.blur + kUnitBySize * size_of(dot.shape);
+    const double unit = kUnitFloor + kUnitByBlur * dot.blur + kUnitBySize * size_of(dot.shape) +
+                        kUnitBySigma * std::sqrt(0.5 * dot.centre_covariance.trace());
     const double offset = (dot.shape.centre - sight.map(places[i])).norm();
     if (!is_bare((growths[i] - *middle) / unit, offset / unit, i == 0) ||
         !fits(dot, sight.map, places[i], dot_radius(sight.shape, static_cast<int>(i))))
