@@ -47,7 +47,7 @@ bool cut_by_frame(const EllipseShape& shape, const Window& frame) {
 class DiscTracker::State {
  public:
   explicit State(const DiscTrackerParameters& parameters)
-      : parameters_(parameters), finder_(parameters) {}
+      : parameters_(parameters), finder_(parameters), fitter_(edge_fit_parameters(parameters)) {}
 
   EllipseFeature acquire(Canvas& canvas, const EllipsePrediction& prediction);
   EllipseFeature track(Canvas& canvas);
