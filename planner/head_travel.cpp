@@ -27,7 +27,8 @@ double pan_distance(double wanted, double from, const HeadLimits& limits) {
 /// Pan of the head, within its range, that points at the landmark; nothing near a stop.
 std::optional<double> free_pan(const Landmark& landmark, const Pose2& pose, const HeadModel& head) {
   constexpr double kMargin = from_deg(6.0);
-  const HeadAngles aim = aim_at(head.geometry, to_isometry(pose).inverse() * landmark.centre_w());
+  const HeadAngles aim =
+      aim_at(head.geometry, head.ground.place(pose).inverse() * landmark.centre_w());
   for (const double pan : {aim.pan, aim.pan - 2.0 * kPi, aim.pan + 2.0 * kPi})
     if (pan >= head.limits.pan_min + kMargin && pan <= head.limits.pan_max - kMargin) return pan;
   return std::nullopt;
@@ -69,7 +70,8 @@ Arrival foresee(const Landmark& landmark, std::optional<double> zoom_mm,
   Arrival arrival{0.0, context.belief.pose, context.station_m};
   // Each round leaves about an eighth of the error.
   for (int round = 0; round < 4; ++round) {
-    const Eigen::Vector3d p_r = to_isometry(arrival.pose).inverse() * landmark.centre_w();
+    const Eigen::Vector3d p_r =
+        context.head_model.ground.place(arrival.pose).inverse() * landmark.centre_w();
     const double range = (p_r - context.head_model.geometry.mount_r).norm();
     const double zoom = zoom_mm ? *zoom_mm : zoom_for(landmark, range, context.head_model);
     arrival.seconds = travel_time(context.head, aim_at(context.head_model.geometry, p_r), zoom,

@@ -13,8 +13,8 @@ bool within(double angle, double low, double high) {
 }  // namespace
 
 Visibility::Visibility(const FloorPlan& plan, HeadGeometry head, HeadLimits limits,
-                       VisibilityParams params)
-    : plan_(&plan), head_(std::move(head)), limits_(limits), params_(params) {}
+                       VisibilityParams params, const Ground& ground)
+    : plan_(&plan), head_(std::move(head)), limits_(limits), params_(params), ground_(ground) {}
 
 Sight Visibility::sight(const Landmark& landmark, const Pose2& pose) const {
   const double distance = range(landmark, pose);
@@ -22,7 +22,7 @@ Sight Visibility::sight(const Landmark& landmark, const Pose2& pose) const {
   if (distance > params_.max_range_m) return Sight::too_far;
   if (view_angle(landmark, pose) > from_deg(params_.max_view_angle_deg)) return Sight::too_oblique;
 
-  const Eigen::Isometry3d wMr = to_isometry(pose);
+  const Eigen::Isometry3d wMr = ground_.place(pose);
   const HeadAngles aim = aim_at(head_, wMr.inverse() * landmark.centre_w());
   const bool pan_reaches = within(aim.pan, limits_.pan_min, limits_.pan_max) ||
                            within(aim.pan + 2.0 * kPi, limits_.pan_min, limits_.pan_max) ||
@@ -35,11 +35,11 @@ Sight Visibility::sight(const Landmark& landmark, const Pose2& pose) const {
 }
 
 double Visibility::range(const Landmark& landmark, const Pose2& pose) const {
-  return (to_isometry(pose) * head_.mount_r - landmark.centre_w()).norm();
+  return (ground_.place(pose) * head_.mount_r - landmark.centre_w()).norm();
 }
 
 double Visibility::view_angle(const Landmark& landmark, const Pose2& pose) const {
-  const Eigen::Vector3d sight_w = to_isometry(pose) * head_.mount_r - landmark.centre_w();
+  const Eigen::Vector3d sight_w = ground_.place(pose) * head_.mount_r - landmark.centre_w();
   const Eigen::Vector3d normal_w = landmark.normal_w();
   return std::atan2(normal_w.cross(sight_w).norm(), normal_w.dot(sight_w));
 }

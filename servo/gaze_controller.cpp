@@ -43,11 +43,12 @@ std::string_view to_string(GazeEvent event) {
 }
 
 GazeController::GazeController(HeadGeometry geometry, HeadLimits limits, ZoomCalibration zoom,
-                               GazeParams params)
+                               GazeParams params, const Ground& ground)
     : geometry_(std::move(geometry)),
       limits_(limits),
       zoom_(std::move(zoom)),
       params_(params),
+      ground_(ground),
       servo_(geometry_, params_.servo),
       zoom_control_(params_.zoom) {}
 
@@ -106,7 +107,7 @@ Eigen::Vector3d GazeController::landmark_in_base(const GazeInput& input,
                                                  const Landmark& landmark) const {
   // What the camera saw is nearer to the truth than what the belief says.
   if (seen_at_r_) return *seen_at_r_;
-  return to_isometry(input.belief.pose).inverse() * landmark.centre_w();
+  return ground_.place(input.belief.pose).inverse() * landmark.centre_w();
 }
 
 /// The same direction within the head's range: the pan nearest to where the head is, and never
@@ -285,7 +286,7 @@ GazeOutput GazeController::watch(const GazeInput& input, const Landmark& landmar
   }
 
   const Eigen::Isometry3d rMc = camera_in_base(geometry_, input.head.angles);
-  const Eigen::Isometry3d rMw = to_isometry(input.belief.pose).inverse();
+  const Eigen::Isometry3d rMw = ground_.place(input.belief.pose).inverse();
   // However wrong the belief, what is seen is not within the camera.
   const double range = std::max((rMw * landmark.centre_w() - rMc.translation()).norm(), 0.1);
   const Eigen::Vector2d xy = unproject(input.intrinsics, input.sighting->uv);

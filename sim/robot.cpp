@@ -49,8 +49,10 @@ double clamp_rate(double rate, double limit) {
 
 }  // namespace
 
-Robot::Robot(const RobotParams& params, const Pose2& start, double zoom_mm, std::uint64_t seed)
+Robot::Robot(const RobotParams& params, const Pose2& start, double zoom_mm, std::uint64_t seed,
+             const Ground& ground)
     : params_(params),
+      ground_(ground),
       zoom_min_mm_(-std::numeric_limits<double>::infinity()),
       zoom_max_mm_(std::numeric_limits<double>::infinity()),
       odometry_pose_(start),
@@ -170,7 +172,8 @@ Eigen::Isometry3d Robot::camera_pose_after(double s) const {
 
 Eigen::Isometry3d Robot::camera_at(const Pose2& pose, const HeadAngles& head) const {
   const Eigen::Isometry3d rMc = camera_in_base(params_.head, head);
-  return mounting_ ? to_isometry(pose) * *mounting_ * rMc : to_isometry(pose) * rMc;
+  const Eigen::Isometry3d wMr = ground_.place(pose);
+  return mounting_ ? wMr * *mounting_ * rMc : wMr * rMc;
 }
 
 }  // namespace vigia::sim

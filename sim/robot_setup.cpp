@@ -111,6 +111,10 @@ void read_sensor(MapReader sensor, SensorNoise& noise) {
 
 }  // namespace
 
+Rig RobotSetup::rig() const {
+  return head_rig(robot.head, zoom);
+}
+
 RobotSetup read_robot_setup(MapReader& reader) {
   RobotSetup setup;
   setup.name = reader.text("name", "robot");

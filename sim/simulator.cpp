@@ -47,7 +47,7 @@ Simulator::Simulator(const RobotSetup& setup, const WorldMap& world,
                      std::uint64_t seed, const DisturbanceParams& disturbances)
     : setup_(setup),
       world_(sim::true_world(world, disturbances, seed)),
-      robot_(setup.robot, start, setup.initial_zoom_mm, derive_seed(seed, "robot")),
+      robot_(setup.robot, start, setup.initial_zoom_mm, derive_seed(seed, "robot"), world.ground),
       scene_(world_, appearance_of(appearance, world, disturbances, seed),
              derive_seed(seed, "scene")),
       camera_errors_(disturbances, seed),

@@ -17,7 +17,7 @@ report::Overlay overlay_of(const mission::Tick& tick) {
   report::Overlay overlay;
   overlay.predicted = tick.predicted;
   if (tick.observation != nullptr) {
-    const Intrinsics& camera = sensor_of(*tick.observation).intrinsics;
+    const Intrinsics& camera = pinhole(shot_of(*tick.observation));
     if (const auto* disc = std::get_if<EllipseObservation>(tick.observation))
       overlay.measured = disc->ellipse;
     if (const auto* seen = std::get_if<PointsObservation>(tick.observation))

@@ -22,10 +22,11 @@ class PolicyAtPositions {
       : setup_(setup),
         visibility_(visibility),
         head_(head),
-        information_(localization::DiscInformation(head.geometry, head.zoom,
-                                                   {setup.ekf.sensor, setup.look.radius_px}),
-                     localization::PointsInformation(head.geometry, head.zoom,
-                                                     {setup.ekf.sensor, setup.look.fill})),
+        information_(
+            localization::DiscInformation(head.geometry, head.zoom,
+                                          {setup.ekf.sensor, setup.look.radius_px}, head.ground),
+            localization::PointsInformation(head.geometry, head.zoom,
+                                            {setup.ekf.sensor, setup.look.fill}, head.ground)),
         policy_(planner::make_look_policy(
             policy,
             {setup.look.fixed_landmark, RandomStream(setup.seed, "look policy"),
@@ -94,9 +95,10 @@ PlanTable make_plan(const mission::MissionSetup& setup, const std::string& polic
     throw InputError("--policy fixed: the mission needs the key planner.fixed_landmark");
   const auto& robot = setup.robot.robot;
   const planner::Visibility visibility(setup.world.plan, robot.head, robot.head_limits,
-                                       setup.look.visibility);
+                                       setup.look.visibility, setup.world.ground);
   const planner::HeadModel head{robot.head,           robot.head_limits,  setup.robot.zoom,
-                                setup.look.radius_px, setup.look.dwell_s, setup.look.fill};
+                                setup.look.radius_px, setup.look.dwell_s, setup.look.fill,
+                                setup.world.ground};
   planner::FuzzySupervisors supervisors(setup.look.rules);
   const auto plan = planner::plan_perception(setup.path, setup.world.landmarks, visibility, head,
                                              supervisors, setup.look.perception);

@@ -42,9 +42,8 @@ ImageExtent image_extent(const Observation& observation, const Landmark* landmar
   return {{ellipse.u, ellipse.v}, ellipse.a};
 }
 
-const SensorSnapshot& sensor_of(const Observation& observation) {
-  return std::visit([](const auto& seen) -> const SensorSnapshot& { return seen.sensor; },
-                    observation);
+const Shot& shot_of(const Observation& observation) {
+  return std::visit([](const auto& seen) -> const Shot& { return seen.shot; }, observation);
 }
 
 }  // namespace vigia

@@ -27,11 +27,11 @@ void bound_by(const Observation& observation, const Landmark& landmark,
               const sim::RobotTruth& truth, PosteriorBound& bound) {
   const auto& angle = truth.look_angle_error;
   const localization::LookBias bias{angle.pan, angle.tilt, truth.look_log_focal_error};
-  const SensorSnapshot& sensor = sensor_of(observation);
+  const Shot& shot = shot_of(observation);
   if (const auto* disc = std::get_if<EllipseObservation>(&observation))
-    bound.update(truth.pose, landmark, sensor, bias, localization::measured_disc_covariance(*disc));
+    bound.update(truth.pose, landmark, shot, bias, localization::measured_disc_covariance(*disc));
   if (const auto* points = std::get_if<PointsObservation>(&observation))
-    bound.update(truth.pose, landmark, sensor, bias, localization::seen_points(landmark, *points));
+    bound.update(truth.pose, landmark, shot, bias, localization::seen_points(landmark, *points));
 }
 
 }  // namespace
@@ -79,7 +79,7 @@ void DriveScorer::on_start(const mission::MissionSetup& setup, std::uint64_t see
   impl_->score.primary = setup.primary;
   for (std::size_t i = 0; i < setup.localizers.size(); ++i)
     impl_->sums.emplace_back(
-        PosteriorBound(setup.prior.covariance, setup.robot.robot.head, setup.robot.robot.sensor));
+        PosteriorBound(setup.prior.covariance, setup.on_ground(), setup.robot.robot.sensor));
   impl_->last_zoom_mm = setup.robot.initial_zoom_mm;
 }
 

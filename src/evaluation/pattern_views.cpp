@@ -41,7 +41,7 @@ Ring ring_of(const PatternView& view) {
 /// Eq. 16 and 17 as printed, averaged over first, third, fifth and seventh point; the third at the
 /// viewer's right, x and y of a camera that looks along the pattern's axis.
 std::optional<double> printed_theta(const PatternView& view, Ring ring, double phi) {
-  const Intrinsics& intrinsics = view.seen.sensor.intrinsics;
+  const Intrinsics& intrinsics = pinhole(view.seen.shot);
   const int first = ring == Ring::outer ? 1 : 1 + kDotsPerRing;
   std::array<Eigen::Vector2d, kDotsPerRing> points;
   for (int i = 0; i < kDotsPerRing; ++i)
@@ -76,7 +76,7 @@ std::optional<ViewParameters> ring_view(const PatternView& view, ViewMethod meth
 
 std::optional<ViewParameters> refined_view(const PatternView& view) {
   const auto solved = localization::solve_points(
-      localization::seen_points(view.landmark, view.seen), view.seen.sensor.intrinsics);
+      localization::seen_points(view.landmark, view.seen), pinhole(view.seen.shot));
   if (!solved.has_pose()) return std::nullopt;
   const ViewParameters found = localization::view_of(solved.pose.cMl);
   if (solved.twin && !from_below(found)) return localization::view_of(solved.twin->cMl);
@@ -134,9 +134,8 @@ LimitErrors limit_of_views(const std::vector<PatternView>& views) {
   LimitErrors limit;
   int counted = 0;
   for (const PatternView& view : views) {
-    const auto bound =
-        view_bound(localization::seen_points(view.landmark, view.seen), view.seen.sensor.intrinsics,
-                   view.wMc.inverse() * view.landmark.wMl);
+    const auto bound = view_bound(localization::seen_points(view.landmark, view.seen),
+                                  pinhole(view.seen.shot), view.wMc.inverse() * view.landmark.wMl);
     if (!bound) continue;
     ++counted;
     const Eigen::Matrix3d wRl = view.landmark.wMl.linear();

@@ -8,9 +8,9 @@
 
 namespace vigia::evaluation {
 
-PosteriorBound::PosteriorBound(const Eigen::Matrix3d& prior, const HeadGeometry& geometry,
+PosteriorBound::PosteriorBound(const Eigen::Matrix3d& prior, const RigOnGround& on_ground,
                                const SensorNoise& noise)
-    : geometry_(geometry), noise_(noise) {
+    : on_ground_(on_ground), noise_(noise) {
   P_.topLeftCorner<3, 3>() = prior;
   begin_look(0);
 }
@@ -27,12 +27,11 @@ void PosteriorBound::predict(const Pose2& truth, const OdometryIncrement& increm
   P_ = localization::propagate_covariance(P_, truth, increment, control);
 }
 
-bool PosteriorBound::update(const Pose2& truth, const Landmark& landmark,
-                            const SensorSnapshot& sensor, const localization::LookBias& bias,
-                            const Eigen::Matrix3d& R) {
-  const auto image = localization::predict_disc(landmark, sensor, geometry_, truth, bias);
+bool PosteriorBound::update(const Pose2& truth, const Landmark& landmark, const Shot& shot,
+                            const localization::LookBias& bias, const Eigen::Matrix3d& R) {
+  const auto image = localization::predict_disc(landmark, shot, on_ground_, truth, bias);
   if (!image) return false;
-  if (sensor.look != look_) begin_look(sensor.look);
+  if (shot.look != look_) begin_look(shot.look);
   const localization::Matrix36 H = localization::state_jacobian(*image);
   const Eigen::Matrix3d total = R + localization::reading_covariance(*image, noise_);
   const auto K = localization::kalman_gain(P_, H, total);
@@ -41,13 +40,13 @@ bool PosteriorBound::update(const Pose2& truth, const Landmark& landmark,
   return true;
 }
 
-bool PosteriorBound::update(const Pose2& truth, const Landmark& landmark,
-                            const SensorSnapshot& sensor, const localization::LookBias& bias,
+bool PosteriorBound::update(const Pose2& truth, const Landmark& landmark, const Shot& shot,
+                            const localization::LookBias& bias,
                             const std::vector<localization::SeenPoint>& points) {
   const auto image =
-      localization::measure_points(points, landmark.wMl, sensor, geometry_, truth, bias);
+      localization::measure_points(points, landmark.wMl, shot, on_ground_, truth, bias);
   if (!image) return false;
-  if (sensor.look != look_) begin_look(sensor.look);
+  if (shot.look != look_) begin_look(shot.look);
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
   const Matrix6 R = localization::reading_covariance(*image, noise_);
   const Matrix6 HP = image->H * P_;

@@ -70,7 +70,7 @@ PatternView quixote_view(const QuixoteSetting& setting, const Landmark& pattern,
   view.landmark = pattern;
   view.wMc = looking_at(p_w, pattern.centre_w());
   view.wMc.linear() = view.wMc.linear() * localization::sight_rotation(ray_c);
-  view.seen.sensor.intrinsics = setting.camera;
+  view.seen.shot.model = setting.camera;
   view.seen.expected = pattern.id;
   view.seen.landmark = pattern.id;
   const Eigen::Isometry3d cMl = view.wMc.inverse() * pattern.wMl;

@@ -25,7 +25,7 @@ const tracking::PointsFeature* pick(const std::vector<tracking::PointsFeature>& 
 
 RenderedViews render_views(const QuixoteSetting& setting, const std::vector<PatternView>& views,
                            const sim::ImagingParams& imaging, std::uint64_t seed) {
-  const WorldMap world{"quixote", quixote_room(setting), quixote_patterns(setting)};
+  const WorldMap world{"quixote", quixote_room(setting), {}, quixote_patterns(setting)};
   const sim::Scene scene(world, std::make_shared<const sim::Appearance>(), seed);
   const auto tracker = tracking::make_point_tracker("pattern", {false, world.landmarks});
   RenderedViews result;

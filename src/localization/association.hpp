@@ -26,7 +26,7 @@ struct Association {
 struct AssociationModel {
   const LandmarkMap& map;
   const FloorPlan* plan;  ///< null: nothing occludes
-  const HeadGeometry& geometry;
+  const RigOnGround& on_ground;
   const SensorNoise& noise;
   double gate;  ///< bound on the NIS
 };

@@ -162,24 +162,24 @@ std::optional<Ellipse> disc_image(const Landmark& landmark, const Intrinsics& in
   return to_pixels(intrinsics, through_lens(*lens, image));
 }
 
-std::optional<DiscMeasurement> predict_disc(const Landmark& landmark, const SensorSnapshot& sensor,
-                                            const HeadGeometry& geometry, const Pose2& pose,
+std::optional<DiscMeasurement> predict_disc(const Landmark& landmark, const Shot& shot,
+                                            const RigOnGround& on_ground, const Pose2& pose,
                                             const LookBias& bias) {
   const auto radius = disc_radius(landmark);
   if (!radius) return std::nullopt;
-  const HeadAngles head{sensor.head.pan + bias.pan, sensor.head.tilt + bias.tilt};
-  const Eigen::Isometry3d wMc = to_isometry(pose) * camera_in_base(geometry, head);
+  const HeadAngles head{shot.head.pan + bias.pan, shot.head.tilt + bias.tilt};
+  const Eigen::Isometry3d wMc = on_ground.wMc(shot.camera, head, pose);
   const Disc disc = in_camera(landmark, *radius, wMc);
   if (!has_image(disc)) return std::nullopt;
   const PlaneEllipse image = perspective(disc);
-  const auto lens = lens_at(sensor.intrinsics, image.c);
+  const auto lens = lens_at(pinhole(shot), image.c);
   if (!lens) return std::nullopt;
   const PlaneEllipse seen = through_lens(*lens, image);
 
-  const double px = sensor.intrinsics.px * std::exp(bias.log_focal);
-  const double py = sensor.intrinsics.py * std::exp(bias.log_focal);
+  const double px = pinhole(shot).px * std::exp(bias.log_focal);
+  const double py = pinhole(shot).py * std::exp(bias.log_focal);
   const Eigen::Vector3d scale(px, py, 1.0);
-  const Eigen::Matrix<double, 6, 5> twists = camera_twists(geometry, head, wMc);
+  const Eigen::Matrix<double, 6, 5> twists = camera_twists(on_ground, shot.camera, head, pose, wMc);
   Eigen::Matrix<double, 3, 5> dz;
   for (Eigen::Index i = 0; i < 5; ++i) {
     const Eigen::Vector3d w_c = twists.col(i).tail<3>();
@@ -190,7 +190,7 @@ std::optional<DiscMeasurement> predict_disc(const Landmark& landmark, const Sens
   }
   const Eigen::Vector2d off_axis(px * seen.c.x(), py * seen.c.y());
   DiscMeasurement measurement;
-  measurement.z << sensor.intrinsics.u0 + off_axis.x(), sensor.intrinsics.v0 + off_axis.y(),
+  measurement.z << pinhole(shot).u0 + off_axis.x(), pinhole(shot).v0 + off_axis.y(),
       seen.log_size + 0.5 * std::log(px * py);
   measurement.dz_dpose = dz.leftCols<3>();
   measurement.dz_dbias << dz.rightCols<2>(), Eigen::Vector3d(off_axis.x(), off_axis.y(), 1.0);

@@ -46,15 +46,15 @@ bool is_usable(const PointsObservation& observation) {
 }
 
 bool is_image(const EkfInput& input) {
-  return sensor_of(input) != nullptr;
+  return shot_of(input) != nullptr;
 }
 
 }  // namespace
 
-EkfLocalizer::EkfLocalizer(LandmarkMap map, const HeadGeometry& geometry, const EkfParams& params,
+EkfLocalizer::EkfLocalizer(LandmarkMap map, const RigOnGround& on_ground, const EkfParams& params,
                            std::optional<FloorPlan> plan)
     : map_(std::move(map)),
-      geometry_(geometry),
+      on_ground_(on_ground),
       params_(params),
       plan_(std::move(plan)),
       gate_(chi_square_quantile(params.gate_probability, kDof)),
@@ -87,7 +87,7 @@ void EkfLocalizer::predict(const OdometryIncrement& increment) {
   const std::vector<EkfInput> ahead = drop_extrapolated();
   append(Motion{increment, mean_speed_.even(increment)});
   for (const EkfInput& fix : ahead) {
-    const std::vector<Event> later = roll_back(sensor_of(fix)->stamp);
+    const std::vector<Event> later = roll_back(shot_of(fix)->stamp);
     append(fix);
     for (const Event& event : later) append(event.input, event.extrapolated);
   }
@@ -105,24 +105,24 @@ UpdateResult EkfLocalizer::update(const Observation& observation) {
 }
 
 UpdateResult EkfLocalizer::take_in(const Observation& observation) {
-  const SensorSnapshot& sensor = vigia::sensor_of(observation);
-  if (sensor.stamp < horizon_) return {UpdateStatus::too_late, std::nullopt, 0.0, 0};
-  const std::vector<Event> later = roll_back(sensor.stamp);
-  const bool first_of_look = state().look != sensor.look;
-  const EkfState at = with_look(state(), sensor.look);
+  const Shot& shot = vigia::shot_of(observation);
+  if (shot.stamp < horizon_) return {UpdateStatus::too_late, std::nullopt, 0.0, 0};
+  const std::vector<Event> later = roll_back(shot.stamp);
+  const bool first_of_look = state().look != shot.look;
+  const EkfState at = with_look(state(), shot.look);
   const Match found = std::visit([&](const auto& seen) { return match(seen, at); }, observation);
   if (found.fix)
     append(*found.fix);
   else if (!events_.empty() && events_.back().extrapolated)
     events_.pop_back();
   for (const Event& event : later) append(event.input, event.extrapolated);
-  watch_innovations(found.result, sensor.look, first_of_look);
+  watch_innovations(found.result, shot.look, first_of_look);
   return found.result;
 }
 
 EkfLocalizer::Match EkfLocalizer::match(const EllipseObservation& observation,
                                         const EkfState& at) const {
-  const AssociationModel model{map_, plan_ ? &*plan_ : nullptr, geometry_, params_.sensor, gate_};
+  const AssociationModel model{map_, plan_ ? &*plan_ : nullptr, on_ground_, params_.sensor, gate_};
   const Eigen::Vector3d z = measured_disc(observation);
   const Eigen::Matrix3d R = measurement_covariance(observation);
   const Association found = associate(model, at, observation, z, R);
@@ -134,18 +134,18 @@ EkfLocalizer::Match EkfLocalizer::match(const EllipseObservation& observation,
       found.inside_gate[1].cost - best.cost < 2.0 * std::log(params_.ambiguity_ratio))
     return {{UpdateStatus::ambiguous, std::nullopt, best.nis, kDof}, std::nullopt};
   return {{UpdateStatus::fused, best.landmark->id, best.nis, kDof},
-          DiscFix{observation.sensor, *best.landmark, z, params_.use_size ? R : without_size(R)}};
+          DiscFix{observation.shot, *best.landmark, z, params_.use_size ? R : without_size(R)}};
 }
 
 EkfLocalizer::Match EkfLocalizer::match(const PointsObservation& observation,
                                         const EkfState& at) const {
   const Landmark* landmark = map_.find(observation.landmark);
   if (landmark == nullptr) return {{UpdateStatus::gated, std::nullopt, 0.0, 0}, std::nullopt};
-  PointsFix fix{observation.sensor, *landmark,
+  PointsFix fix{observation.shot, *landmark,
                 seen_points(*landmark, observation, params_.centre_floor_px)};
   if (fix.points.empty()) return {{UpdateStatus::degenerate, std::nullopt, 0.0, 0}, std::nullopt};
   const UpdateResult result =
-      gate_points({geometry_, params_.sensor, params_.gate_probability}, at, fix);
+      gate_points({on_ground_, params_.sensor, params_.gate_probability}, at, fix);
   if (result.status != UpdateStatus::fused) return {result, std::nullopt};
   return {result, std::move(fix)};
 }
@@ -155,7 +155,7 @@ void EkfLocalizer::append(const EkfInput& input, bool extrapolated) {
   if (const auto* motion = std::get_if<Motion>(&input))
     move_by(*motion, event);
   else
-    fuse(*sensor_of(input), event);
+    fuse(*shot_of(input), event);
   assert(event.after.mean.allFinite() && event.after.covariance.allFinite());
   events_.push_back(std::move(event));
 }
@@ -167,18 +167,18 @@ void EkfLocalizer::move_by(const Motion& motion, Event& event) const {
   if ((motion.increment.to - window.last_image).seconds() > kLookPause) window = {};
 }
 
-void EkfLocalizer::fuse(const SensorSnapshot& sensor, Event& event) const {
+void EkfLocalizer::fuse(const Shot& shot, Event& event) const {
   Window& window = event.window;
-  event.after = with_look(event.after, sensor.look);
-  if (window.events == 0 || window.start.look != sensor.look) {
+  event.after = with_look(event.after, shot.look);
+  if (window.events == 0 || window.start.look != shot.look) {
     window = {};
     window.start = event.after;
   }
   ++window.events;
   ++window.images;
-  window.last_image = sensor.stamp;
+  window.last_image = shot.stamp;
   auto smoothed = smooth_look(window.start, inputs_of_look(event), guess_of_look(event),
-                              {geometry_, params_.sensor, params_.odometry}, params_.iterations,
+                              {on_ground_, params_.sensor, params_.odometry}, params_.iterations,
                               params_.converged);
   if (!smoothed) {
     window = {};

@@ -22,9 +22,9 @@ OdometryIncrement part(const OdometryIncrement& u, double begin, double end) {
 
 }  // namespace
 
-const SensorSnapshot* sensor_of(const EkfInput& input) {
-  if (const auto* disc = std::get_if<DiscFix>(&input)) return &disc->sensor;
-  if (const auto* points = std::get_if<PointsFix>(&input)) return &points->sensor;
+const Shot* shot_of(const EkfInput& input) {
+  if (const auto* disc = std::get_if<DiscFix>(&input)) return &disc->shot;
+  if (const auto* points = std::get_if<PointsFix>(&input)) return &points->shot;
   return nullptr;
 }
 

@@ -86,24 +86,24 @@ void update(const Eigen::Matrix<double, N, 6>& H, const Eigen::Matrix<double, N,
 /// Updates @p state by an image linearised at @p at. False when there is none from there.
 bool pass(const DiscFix& fix, const Vector6& at, const LookModel& model, EkfState& state,
           Linearised& about) {
-  const auto image = predict_disc(fix.landmark, fix.sensor, model.geometry,
+  const auto image = predict_disc(fix.landmark, fix.shot, model.on_ground,
                                   Pose2::from_vector(at.head<3>()), {at(3), at(4), at(5)});
   if (!image) return false;
   const Matrix36 H = state_jacobian(*image);
   const Eigen::Matrix3d R = fix.R + reading_covariance(*image, model.sensor);
   update<3>(H, R, fix.z - image->z - H * wrapped(state.mean - at), state, about);
-  state.stamp = std::max(state.stamp, fix.sensor.stamp);
+  state.stamp = std::max(state.stamp, fix.shot.stamp);
   return true;
 }
 
 bool pass(const PointsFix& fix, const Vector6& at, const LookModel& model, EkfState& state,
           Linearised& about) {
-  const auto seen = measure_points(fix.points, fix.landmark.wMl, fix.sensor, model.geometry,
+  const auto seen = measure_points(fix.points, fix.landmark.wMl, fix.shot, model.on_ground,
                                    Pose2::from_vector(at.head<3>()), {at(3), at(4), at(5)});
   if (!seen) return false;
   update<6>(seen->H, reading_covariance(*seen, model.sensor),
             seen->y - seen->H * wrapped(state.mean - at), state, about);
-  state.stamp = std::max(state.stamp, fix.sensor.stamp);
+  state.stamp = std::max(state.stamp, fix.shot.stamp);
   return true;
 }
 

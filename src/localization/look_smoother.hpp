@@ -8,7 +8,7 @@ namespace vigia::localization {
 
 /// What the inputs of a look are linearised with.
 struct LookModel {
-  const HeadGeometry& geometry;
+  const RigOnGround& on_ground;
   const SensorNoise& sensor;
   const OdometryNoise& odometry;
 };

@@ -13,13 +13,10 @@ namespace vigia::localization {
 namespace {
 
 /// The planar prior as a pose in space: on the floor and upright, which it takes for certain.
-SpatialPose on_the_floor(const Prior& prior) {
+SpatialPose on_the_floor(const Prior& prior, const Ground& ground) {
   SpatialPose pose;
-  pose.wMr = to_isometry(prior.pose);
-  Eigen::Matrix<double, 6, 3> J = Eigen::Matrix<double, 6, 3>::Zero();
-  J(0, 0) = 1.0;
-  J(1, 1) = 1.0;
-  J(5, 2) = 1.0;
+  pose.wMr = ground.place(prior.pose);
+  const Eigen::Matrix<double, 6, 3> J = ground.dplace_dpose(prior.pose);
   pose.covariance = J * prior.covariance * J.transpose();
   return pose;
 }
@@ -42,9 +39,9 @@ OdometryIncrement rest_of(const OdometryIncrement& u, Stamp stamp) {
 
 }  // namespace
 
-PatternFixLocalizer::PatternFixLocalizer(LandmarkMap map, const HeadGeometry& geometry,
+PatternFixLocalizer::PatternFixLocalizer(LandmarkMap map, const RigOnGround& on_ground,
                                          const PatternFixParams& params)
-    : map_(std::move(map)), geometry_(geometry), params_(params) {
+    : map_(std::move(map)), on_ground_(on_ground), params_(params) {
   reset(Stamp{}, Prior{});
 }
 
@@ -52,7 +49,7 @@ void PatternFixLocalizer::reset(Stamp stamp, const Prior& prior) {
   history_.clear();
   start_ = stamp;
   belief_ = Belief{};
-  believe(on_the_floor(prior), stamp);
+  believe(on_the_floor(prior, on_ground_.ground), stamp);
 }
 
 void PatternFixLocalizer::believe(const SpatialPose& pose, Stamp stamp) {
@@ -87,27 +84,27 @@ UpdateResult PatternFixLocalizer::take_in(const PointsObservation& observation) 
   const Landmark* landmark = map_.find(observation.landmark);
   if (landmark == nullptr) return {UpdateStatus::gated, std::nullopt, 0.0, 0};
   if (!std::holds_alternative<PatternShape>(landmark->shape)) return {};
-  const SensorSnapshot& sensor = observation.sensor;
-  if (sensor.stamp < start_) return {UpdateStatus::too_late, landmark->id, 0.0, 0};
+  const Shot& shot = observation.shot;
+  if (shot.stamp < start_) return {UpdateStatus::too_late, landmark->id, 0.0, 0};
   const auto points = seen_points(*landmark, observation);
-  const PointsPose solved = solve_points(points, sensor.intrinsics, params_.pose);
+  const PointsPose solved = solve_points(points, pinhole(shot), params_.pose);
   if (!solved.has_pose() || solved.frontal) return {UpdateStatus::degenerate, landmark->id, 0.0, 0};
-  const FittedPose* fit = upright(solved, *landmark, sensor);
+  const FittedPose* fit = upright(solved, *landmark, shot);
   if (fit == nullptr) {
     const bool both = solved.status == PointsPoseStatus::ambiguous;
     return {both ? UpdateStatus::ambiguous : UpdateStatus::gated, landmark->id, solved.pose.chi2,
             solved.pose.dof};
   }
-  const double chi2 = scatter(points, sensor.intrinsics, *fit, params_.sensor.look_focal);
+  const double chi2 = scatter(points, pinhole(shot), *fit, params_.sensor.look_focal);
   const UpdateResult result{UpdateStatus::fused, landmark->id, chi2, fit->dof};
   if (fit->dof > 0 && chi2 > chi_square_quantile(params_.gate_probability, fit->dof))
     return {UpdateStatus::gated, result.landmark, result.nis, result.dof};
 
-  SpatialPose pose = robot_in_space(*landmark, *fit, sensor, geometry_, params_.sensor);
-  Stamp stamp = sensor.stamp;
+  SpatialPose pose = robot_in_space(*landmark, *fit, shot, on_ground_, params_.sensor);
+  Stamp stamp = shot.stamp;
   for (const OdometryIncrement& u : history_) {
-    if (u.to <= sensor.stamp) continue;
-    pose = moved_by(pose, rest_of(u, sensor.stamp), params_.odometry);
+    if (u.to <= shot.stamp) continue;
+    pose = moved_by(pose, rest_of(u, shot.stamp), params_.odometry);
     stamp = u.to;
   }
   belief_.status = BeliefStatus::tracking;
@@ -116,9 +113,9 @@ UpdateResult PatternFixLocalizer::take_in(const PointsObservation& observation) 
 }
 
 const FittedPose* PatternFixLocalizer::upright(const PointsPose& solved, const Landmark& landmark,
-                                               const SensorSnapshot& sensor) const {
+                                               const Shot& shot) const {
   const auto stands = [&](const FittedPose& fit) {
-    const SpatialPose pose = robot_in_space(landmark, fit, sensor, geometry_, params_.sensor);
+    const SpatialPose pose = robot_in_space(landmark, fit, shot, on_ground_, params_.sensor);
     return pose.wMr.linear()(2, 2) > std::cos(params_.max_slope);
   };
   const bool pose_stands = stands(solved.pose);

@@ -28,7 +28,7 @@ std::optional<Explanation> explain(const PointsGate& gate, const EkfState& state
   Explanation found;
   found.mean = state.mean;
   for (int i = 0; i < kSteps; ++i) {
-    const auto seen = measure_points(fix.points, fix.landmark.wMl, fix.sensor, gate.geometry,
+    const auto seen = measure_points(fix.points, fix.landmark.wMl, fix.shot, gate.on_ground,
                                      Pose2::from_vector(found.mean.head<3>()),
                                      {found.mean(3), found.mean(4), found.mean(5)});
     if (!seen) return std::nullopt;

@@ -7,7 +7,7 @@ namespace vigia::localization {
 
 /// What the gate weighs points with.
 struct PointsGate {
-  const HeadGeometry& geometry;
+  const RigOnGround& on_ground;
   const SensorNoise& noise;
   double probability;  ///< share of right measurements that pass each of the two tests
 };

@@ -12,15 +12,15 @@ namespace vigia::localization {
 namespace {
 
 /// The sensor of a head that aims at the landmark, its zoom at the wanted focal length.
-SensorSnapshot aimed_sensor(const HeadGeometry& geometry, const ZoomCalibration& zoom,
-                            const Eigen::Vector3d& p_r, double reach_m, double fill) {
-  SensorSnapshot sensor;
-  sensor.head = aim_at(geometry, p_r);
-  const double range = (camera_in_base(geometry, sensor.head).translation() - p_r).norm();
+Shot aimed_shot(const HeadGeometry& geometry, const ZoomCalibration& zoom,
+                const Eigen::Vector3d& p_r, double reach_m, double fill) {
+  Shot shot;
+  shot.head = aim_at(geometry, p_r);
+  const double range = (camera_in_base(geometry, shot.head).translation() - p_r).norm();
   const double reach_px = fill * 0.5 * zoom.at(zoom.min_zoom_mm()).height;
-  sensor.zoom_mm = zoom.zoom_for_focal(reach_px * range / reach_m);
-  sensor.intrinsics = zoom.at(sensor.zoom_mm);
-  return sensor;
+  shot.zoom_mm = zoom.zoom_for_focal(reach_px * range / reach_m);
+  shot.model = zoom.at(shot.zoom_mm);
+  return shot;
 }
 
 /// Each point with the deviation that its mean over the look has.
@@ -52,12 +52,12 @@ std::optional<Eigen::Matrix3d> PointsInformation::look_information(const Landmar
   double reach = 0.0;
   for (const LandmarkPoint& point : model)
     reach = std::max(reach, point.centre_l.norm() + point.radius_m);
-  const Eigen::Vector3d p_r = to_isometry(pose).inverse() * landmark.centre_w();
-  const SensorSnapshot sensor = aimed_sensor(geometry_, zoom_, p_r, reach, params_.fill);
-  const Eigen::Isometry3d wMc = to_isometry(pose) * camera_in_base(geometry_, sensor.head);
-  if (!fits(model, sensor.intrinsics, wMc.inverse() * landmark.wMl)) return std::nullopt;
+  const Eigen::Vector3d p_r = on_ground_.ground.place(pose).inverse() * landmark.centre_w();
+  const Shot shot = aimed_shot(geometry_, zoom_, p_r, reach, params_.fill);
+  const Eigen::Isometry3d wMc = on_ground_.wMc(shot.camera, shot.head, pose);
+  if (!fits(model, pinhole(shot), wMc.inverse() * landmark.wMl)) return std::nullopt;
   const auto measured =
-      measure_points(points_of_look(model, params_), landmark.wMl, sensor, geometry_, pose, {});
+      measure_points(points_of_look(model, params_), landmark.wMl, shot, on_ground_, pose, {});
   if (!measured) return std::nullopt;
 
   SensorNoise averaged = params_.sensor;

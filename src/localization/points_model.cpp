@@ -169,21 +169,20 @@ std::optional<PointsFit> fit_points(const std::vector<SeenPoint>& points,
 }
 
 std::optional<PointsMeasurement> measure_points(const std::vector<SeenPoint>& points,
-                                                const Eigen::Isometry3d& wMl,
-                                                const SensorSnapshot& sensor,
-                                                const HeadGeometry& geometry, const Pose2& pose,
+                                                const Eigen::Isometry3d& wMl, const Shot& shot,
+                                                const RigOnGround& on_ground, const Pose2& pose,
                                                 const LookBias& bias) {
-  const HeadAngles head{sensor.head.pan + bias.pan, sensor.head.tilt + bias.tilt};
-  const Eigen::Isometry3d wMc = to_isometry(pose) * camera_in_base(geometry, head);
+  const HeadAngles head{shot.head.pan + bias.pan, shot.head.tilt + bias.tilt};
+  const Eigen::Isometry3d wMc = on_ground.wMc(shot.camera, head, pose);
   const Eigen::Isometry3d cMl = wMc.inverse() * wMl;
-  Intrinsics intrinsics = sensor.intrinsics;
+  Intrinsics intrinsics = pinhole(shot);
   intrinsics.px *= std::exp(bias.log_focal);
   intrinsics.py *= std::exp(bias.log_focal);
   const auto fit = fit_points(points, intrinsics, cMl);
   if (!fit) return std::nullopt;
 
   // A camera that moves by (v, ω) sees the landmark move by (−v − ω × t, −ω).
-  const Eigen::Matrix<double, 6, 5> twists = camera_twists(geometry, head, wMc);
+  const Eigen::Matrix<double, 6, 5> twists = camera_twists(on_ground, shot.camera, head, pose, wMc);
   Eigen::Matrix<double, 7, 6> dfit_dstate = Eigen::Matrix<double, 7, 6>::Zero();
   dfit_dstate.block<3, 5>(0, 0) =
       skew(cMl.translation()) * twists.bottomRows<3>() - twists.topRows<3>();

@@ -23,10 +23,10 @@ const Eigen::Vector3d kSeedSigma(0.3, 0.3, from_deg(4.0));
 
 /// Two frames of one look that show the same disc count once: they share their biases.
 bool same_disc(const EllipseObservation& a, const EllipseObservation& b) {
-  if (a.sensor.look != b.sensor.look) return false;
+  if (a.shot.look != b.shot.look) return false;
   const auto direction = [](const EllipseObservation& seen) {
-    const Eigen::Vector2d xy = unproject(seen.sensor.intrinsics, {seen.ellipse.u, seen.ellipse.v});
-    return Eigen::Vector3d(camera_in_base({}, seen.sensor.head).linear() *
+    const Eigen::Vector2d xy = unproject(pinhole(seen.shot), {seen.ellipse.u, seen.ellipse.v});
+    return Eigen::Vector3d(camera_in_base(HeadGeometry{}, seen.shot.head).linear() *
                            xy.homogeneous().normalized());
   };
   return direction(a).dot(direction(b)) > std::cos(from_deg(2.0));
@@ -46,12 +46,12 @@ std::vector<EllipseObservation> distinct(const std::vector<EllipseObservation>& 
 }
 
 /// Where a disc of the given radius stands in the base frame, its range from the longer axis.
-Eigen::Vector2d place(const EllipseObservation& seen, double radius, const HeadGeometry& geometry) {
-  const Intrinsics& intrinsics = seen.sensor.intrinsics;
+Eigen::Vector2d place(const EllipseObservation& seen, double radius, const RigOnGround& on_ground) {
+  const Intrinsics& intrinsics = pinhole(seen.shot);
   const Eigen::Vector2d xy = unproject(intrinsics, {seen.ellipse.u, seen.ellipse.v});
   const double depth = radius * std::sqrt(intrinsics.px * intrinsics.py) / seen.ellipse.a;
-  const Eigen::Vector3d p_r =
-      camera_in_base(geometry, seen.sensor.head) * Eigen::Vector3d(depth * xy.homogeneous());
+  const Eigen::Vector3d p_r = on_ground.rig.at(seen.shot.camera).rMc(seen.shot.head) *
+                              Eigen::Vector3d(depth * xy.homogeneous());
   return p_r.head<2>();
 }
 
@@ -83,11 +83,11 @@ bool same_place(const Pose2& a, const Pose2& b) {
 
 }  // namespace
 
-Relocalizer::Relocalizer(LandmarkMap map, FloorPlan plan, const HeadGeometry& geometry,
+Relocalizer::Relocalizer(LandmarkMap map, FloorPlan plan, const RigOnGround& on_ground,
                          const RelocalizerParams& params)
     : map_(std::move(map)),
       plan_(std::move(plan)),
-      geometry_(geometry),
+      on_ground_(on_ground),
       params_(params),
       gate_(chi_square_quantile(params.gate_probability, 3)) {}
 
@@ -137,10 +137,10 @@ std::vector<Pose2> Relocalizer::seeds(const std::vector<EllipseObservation>& sig
       for (const Landmark& k : map_.all()) {
         for (const Landmark& l : map_.all()) {
           if (k.id == l.id || !disc_radius(k) || !disc_radius(l)) continue;
-          const Eigen::Vector2d q_i = place(sightings[i], *disc_radius(k), geometry_);
-          const Eigen::Vector2d q_j = place(sightings[j], *disc_radius(l), geometry_);
-          const Eigen::Vector2d p_k = k.centre_w().head<2>();
-          const Eigen::Vector2d p_l = l.centre_w().head<2>();
+          const Eigen::Vector2d q_i = place(sightings[i], *disc_radius(k), on_ground_);
+          const Eigen::Vector2d q_j = place(sightings[j], *disc_radius(l), on_ground_);
+          const Eigen::Vector2d p_k = on_ground_.ground.in_plan(k.centre_w()).head<2>();
+          const Eigen::Vector2d p_l = on_ground_.ground.in_plan(l.centre_w()).head<2>();
           // Sizes off the optical axis overstate the range by up to a tenth.
           const double tolerance = 0.1 + 0.12 * (q_i.norm() + q_j.norm());
           if (std::abs((q_j - q_i).norm() - (p_l - p_k).norm()) < tolerance)
@@ -176,7 +176,7 @@ std::optional<Relocalizer::Fit> Relocalizer::refine(const Pose2& start,
     }
     for (const Match& match : matches) {
       const auto image =
-          predict_disc(*match.landmark, match.sighting->sensor, geometry_, fit.pose, {});
+          predict_disc(*match.landmark, match.sighting->shot, on_ground_, fit.pose, {});
       if (!image) return std::nullopt;
       const Eigen::Matrix3d S =
           total_covariance(*image, pixel_covariance(*match.sighting), params_.sensor);
@@ -198,10 +198,10 @@ std::optional<Relocalizer::Fit> Relocalizer::refine(const Pose2& start,
 }
 
 bool Relocalizer::plausible(const Match& match, const Pose2& pose) const {
-  const HeadAngles& head = match.sighting->sensor.head;
-  const Eigen::Isometry3d wMc = to_isometry(pose) * camera_in_base(geometry_, head);
+  const Shot& shot = match.sighting->shot;
+  const Eigen::Isometry3d wMc = on_ground_.wMc(shot.camera, shot.head, pose);
   if (!plan_.line_of_sight(wMc.translation(), match.landmark->centre_w())) return false;
-  const auto image = disc_image(*match.landmark, match.sighting->sensor.intrinsics, wMc);
+  const auto image = disc_image(*match.landmark, pinhole(shot), wMc);
   if (!image) return false;
   const Ellipse& seen = match.sighting->ellipse;
   return std::abs(image->b / image->a - seen.b / seen.a) < params_.aspect_tolerance;
@@ -214,7 +214,7 @@ std::vector<Relocalizer::Match> Relocalizer::explain(
     Match best{&seen, nullptr};
     double least = gate_;
     for (const Landmark& landmark : map_.all()) {
-      const auto image = predict_disc(landmark, seen.sensor, geometry_, fit.pose, {});
+      const auto image = predict_disc(landmark, seen.shot, on_ground_, fit.pose, {});
       if (!image) continue;
       const Eigen::Matrix3d S = total_covariance(*image, pixel_covariance(seen), params_.sensor) +
                                 image->dz_dpose * fit.covariance * image->dz_dpose.transpose();
@@ -230,12 +230,12 @@ std::vector<Relocalizer::Match> Relocalizer::explain(
 }
 
 bool Relocalizer::should_be_seen(const Landmark& landmark, const Pose2& pose,
-                                 const SensorSnapshot& view) const {
-  const Eigen::Isometry3d wMc = to_isometry(pose) * camera_in_base(geometry_, view.head);
-  const auto image = disc_image(landmark, view.intrinsics, wMc);
+                                 const Shot& view) const {
+  const Eigen::Isometry3d wMc = on_ground_.wMc(view.camera, view.head, pose);
+  const auto image = disc_image(landmark, pinhole(view), wMc);
   if (!image || image->a < params_.min_radius_px) return false;
   const double margin = 2.0 * image->a;
-  if (!in_image(view.intrinsics, {image->u, image->v}, margin)) return false;
+  if (!in_image(pinhole(view), {image->u, image->v}, margin)) return false;
   const Eigen::Vector3d line = wMc.translation() - landmark.centre_w();
   const double cosine = line.normalized().dot(landmark.normal_w());
   return line.norm() <= params_.max_range_m &&
@@ -254,7 +254,7 @@ int Relocalizer::missed(const Hypothesis& hypothesis, const Sweep& sweep) const 
   return static_cast<int>(
       std::count_if(map_.all().begin(), map_.all().end(), [&](const Landmark& landmark) {
         return seen.count(landmark.id) == 0 &&
-               std::any_of(sweep.views.begin(), sweep.views.end(), [&](const SensorSnapshot& view) {
+               std::any_of(sweep.views.begin(), sweep.views.end(), [&](const Shot& view) {
                  return should_be_seen(landmark, hypothesis.fit.pose, view);
                });
       }));

@@ -77,7 +77,7 @@ struct RingInput {
 
 std::optional<RingInput> read_ring(const PointsObservation& observation,
                                    const RingPoseParams& params) {
-  const Intrinsics& intrinsics = observation.sensor.intrinsics;
+  const Intrinsics& intrinsics = pinhole(observation.shot);
   const LabelledPoint* middle = find_label(observation, 0);
   if (params.centre_view && middle == nullptr) return std::nullopt;
   std::vector<Eigen::Vector2d> pixels;

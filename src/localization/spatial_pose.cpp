@@ -1,5 +1,6 @@
 #include "vigia/localization/spatial_pose.hpp"
 
+#include "camera_twists.hpp"
 #include "space_geometry.hpp"
 
 #include <algorithm>
@@ -21,10 +22,10 @@ Eigen::RowVector3d heading_by_turn(const Eigen::Vector3d& f) {
 
 }  // namespace
 
-SpatialPose robot_in_space(const Landmark& landmark, const FittedPose& fit,
-                           const SensorSnapshot& sensor, const HeadGeometry& geometry,
-                           const SensorNoise& noise) {
-  const Eigen::Isometry3d rMc = camera_in_base(geometry, sensor.head);
+SpatialPose robot_in_space(const Landmark& landmark, const FittedPose& fit, const Shot& shot,
+                           const RigOnGround& on_ground, const SensorNoise& noise) {
+  const Camera& camera = on_ground.rig.at(shot.camera);
+  const Eigen::Isometry3d rMc = camera.rMc(shot.head);
   const Eigen::Isometry3d wMc = landmark.wMl * fit.cMl.inverse();
   SpatialPose pose;
   pose.wMr = wMc * rMc.inverse();
@@ -38,7 +39,7 @@ SpatialPose robot_in_space(const Landmark& landmark, const FittedPose& fit,
   dbase_dfit.topRightCorner<3, 3>() = skew(camera_to_base) - skew(fit.cMl.translation());
   dbase_dfit.bottomRightCorner<3, 3>() = -Eigen::Matrix3d::Identity();
   // The camera's twist in the base by pan and tilt moves the base the other way, about the camera.
-  const Eigen::Matrix<double, 6, 2> twist = camera_jacobian_head(geometry, sensor.head);
+  const Eigen::Matrix<double, 6, 2> twist = head_twists(camera, shot.head);
   Eigen::Matrix<double, 6, 2> dbase_dhead;
   dbase_dhead << skew(camera_to_base) * twist.bottomRows<3>() - twist.topRows<3>(),
       -twist.bottomRows<3>();

@@ -6,7 +6,7 @@ namespace vigia::mission {
 
 std::unique_ptr<ExposedFrame> LateFrames::take(Stamp now) {
   std::unique_ptr<ExposedFrame> newest;
-  while (!on_the_way_.empty() && on_the_way_.front().sensor.stamp + latency_ <= now) {
+  while (!on_the_way_.empty() && on_the_way_.front().shot.stamp + latency_ <= now) {
     newest = std::make_unique<ExposedFrame>(std::move(on_the_way_.front()));
     on_the_way_.pop_front();
   }

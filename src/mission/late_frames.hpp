@@ -15,7 +15,7 @@ namespace vigia::mission {
 /// A frame with what the robot's sensors said, and what was true, when it was exposed.
 struct ExposedFrame {
   std::unique_ptr<imaging::Frame> frame;
-  SensorSnapshot sensor;
+  Shot shot;
   sim::RobotTruth truth;
 };
 

@@ -19,9 +19,9 @@ localization::LandmarkInformation landmark_information(const MissionSetup& setup
   localization::PointsInformationParams points;
   points.sensor = setup.ekf.sensor;
   points.fill = setup.look.fill;
-  return {localization::DiscInformation(head, setup.robot.zoom,
-                                        {setup.ekf.sensor, setup.look.radius_px}),
-          localization::PointsInformation(head, setup.robot.zoom, points)};
+  return {localization::DiscInformation(
+              head, setup.robot.zoom, {setup.ekf.sensor, setup.look.radius_px}, setup.world.ground),
+          localization::PointsInformation(head, setup.robot.zoom, points, setup.world.ground)};
 }
 
 std::unique_ptr<localization::Localizer> make_localizer(const std::string& name,
@@ -30,8 +30,8 @@ std::unique_ptr<localization::Localizer> make_localizer(const std::string& name,
     return std::make_unique<localization::OdometryLocalizer>(setup.ekf.odometry);
   if (name == "pattern_fix")
     return std::make_unique<localization::PatternFixLocalizer>(
-        setup.world.landmarks, setup.robot.robot.head, pattern_fix_params(setup));
-  return std::make_unique<localization::EkfLocalizer>(setup.world.landmarks, setup.robot.robot.head,
+        setup.world.landmarks, setup.on_ground(), pattern_fix_params(setup));
+  return std::make_unique<localization::EkfLocalizer>(setup.world.landmarks, setup.on_ground(),
                                                       setup.ekf, setup.world.plan);
 }
 

@@ -16,10 +16,11 @@ LookScheduler::LookScheduler(const MissionSetup& setup, const InformationModel& 
     : setup_(setup),
       information_(information),
       visibility_(setup.world.plan, setup.robot.robot.head, setup.robot.robot.head_limits,
-                  setup.look.visibility),
+                  setup.look.visibility, setup.world.ground),
       head_model_{setup.robot.robot.head, setup.robot.robot.head_limits,
                   setup.robot.zoom,       setup.look.radius_px,
-                  setup.look.dwell_s,     setup.look.fill},
+                  setup.look.dwell_s,     setup.look.fill,
+                  setup.world.ground},
       policy_(planner::make_look_policy(
           setup.look.policy,
           {setup.look.fixed_landmark, RandomStream(seed, "look policy"), setup.world.landmarks,

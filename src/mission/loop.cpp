@@ -19,7 +19,7 @@ Pose2 draw_start(const MissionSetup& setup, std::uint64_t seed) {
 
 /// How far from the principal point the feature lies, px.
 double off_centre(const Observation& observation) {
-  const Intrinsics& camera = sensor_of(observation).intrinsics;
+  const Intrinsics& camera = pinhole(shot_of(observation));
   return (image_extent(observation).centre - Eigen::Vector2d(camera.u0, camera.v0)).norm();
 }
 
@@ -28,15 +28,17 @@ double off_centre(const Observation& observation) {
 Loop::Loop(const MissionSetup& setup, std::uint64_t seed, const std::vector<Listener*>& listeners)
     : setup_(setup),
       seed_(seed),
+      rig_(setup.robot.rig()),
       listeners_(listeners),
       simulator_(setup.robot, setup.world, setup.appearance, draw_start(setup, seed), seed,
                  setup.disturbances),
       information_(landmark_information(setup)),
-      relocalizer_(setup.world.landmarks, setup.world.plan, setup.robot.robot.head,
+      relocalizer_(setup.world.landmarks, setup.world.plan, setup.on_ground(),
                    relocalizer_params(setup)),
       scheduler_(setup, information_, seed),
-      watcher_(setup.tracker, setup.world.landmarks, setup.robot.robot.head, setup.ekf.sensor),
-      gaze_(setup.robot.robot.head, setup.robot.robot.head_limits, setup.robot.zoom, setup.gaze),
+      watcher_(setup.tracker, setup.world.landmarks, setup.on_ground(), setup.ekf.sensor),
+      gaze_(setup.robot.robot.head, setup.robot.robot.head_limits, setup.robot.zoom, setup.gaze,
+            setup.world.ground),
       base_motion_({setup.robot.robot.base, setup.tick_s}),
       pilot_(setup.path, setup.world.plan, setup.robot.robot.radius_m, setup.robot.robot.base,
              setup.pilot),
@@ -91,7 +93,7 @@ void Loop::tick() {
   now_ = now_ + dt_;
   predict();
 
-  late_frames_.expose({simulator_.expose(), sensor_, simulator_.robot().truth()});
+  late_frames_.expose({simulator_.expose(), shot_, simulator_.robot().truth()});
   delivered_ = late_frames_.take(now_);
   const ExposedFrame& shown = delivered_ ? *delivered_ : *late_frames_.newest();
   const TimedFrame frame(*shown.frame);
@@ -101,7 +103,7 @@ void Loop::tick() {
   for (auto& localizer_tick : localizer_ticks_) localizer_tick.update.reset();
   if (setup_.full_frames) imaging::grey_image(frame);
   // A frame of an earlier look says nothing of this one.
-  const bool usable = delivered_ && delivered_->sensor.look == look_;
+  const bool usable = delivered_ && delivered_->shot.look == look_;
   if (recovering_) {
     recover(usable ? &frame : nullptr);
   } else {
@@ -128,7 +130,7 @@ void Loop::tick() {
                   command_,
                   recovering_ ? GazeState::search : gaze_.state(),
                   gaze_.current(),
-                  observation_ ? sensor_of(*observation_).look : look_,
+                  observation_ ? shot_of(*observation_).look : look_,
                   sighting_ ? std::optional(sighting_->status) : std::nullopt,
                   observation_ ? &*observation_ : nullptr,
                   centring,
@@ -147,7 +149,8 @@ void Loop::tick() {
 void Loop::predict() {
   odometry_ = simulator_.robot().read_odometry();
   head_ = simulator_.robot().read_head();
-  sensor_ = {now_, setup_.robot.zoom.at(head_.zoom_mm), head_.angles, head_.zoom_mm, look_};
+  const Camera& camera = rig_.cameras.front();
+  shot_ = {now_, camera.id, camera.model(head_.zoom_mm), head_.angles, head_.zoom_mm, look_};
   travelled_m_ += std::abs(odometry_.trans);
   motion_.moved(odometry_);
   const Stopwatch watch;
@@ -160,9 +163,9 @@ void Loop::watch(const imaging::Frame& frame) {
   if (request_ == servo::TrackRequest::none || !order) return;
   const Landmark* landmark = setup_.world.landmarks.find(order->landmark);
   const Stopwatch watch;
-  const SensorSnapshot& sensor = delivered_->sensor;
+  const Shot& shot = delivered_->shot;
   sighting_ =
-      watcher_.watch(frame, request_, sensor, motion_.belief_at(sensor.stamp, belief()), *landmark);
+      watcher_.watch(frame, request_, shot, motion_.belief_at(shot.stamp, belief()), *landmark);
   timing_.track += watch.elapsed_ms();
   observation_ = sighting_->observation;
 }
@@ -289,15 +292,15 @@ void Loop::steer() {
   const BaseRates expected = base_motion_.expect(odometry, command_);
   const Stopwatch watch;
   const auto order = gaze_.current();
-  servo::GazeInput input{
-      now_, head_, expected, belief(), setup_.world.landmarks, sensor_.intrinsics, std::nullopt};
+  servo::GazeInput input{now_,           head_,       expected, belief(), setup_.world.landmarks,
+                         pinhole(shot_), std::nullopt};
   input.sighting = sighting_now();
   const servo::GazeOutput output = gaze_.step(input);
   timing_.servo += watch.elapsed_ms();
   if (order) {
     const Landmark* landmark = setup_.world.landmarks.find(order->landmark);
     if (delivered_)
-      watcher_.settle(delivered_->sensor, motion_.belief_at(delivered_->sensor.stamp, belief()),
+      watcher_.settle(delivered_->shot, motion_.belief_at(delivered_->shot.stamp, belief()),
                       *landmark);
     if (output.event != servo::GazeEvent::none) tell_gaze(output.event, order->landmark);
   }
@@ -309,14 +312,14 @@ void Loop::steer() {
 std::optional<servo::GazeSighting> Loop::sighting_now() const {
   // A look that was dropped in this tick, and perhaps followed by another, has no sighting.
   if (!observation_ || !gaze_.current()) return std::nullopt;
-  const SensorSnapshot& then = sensor_of(*observation_);
+  const Shot& then = shot_of(*observation_);
   if (then.look != look_) return std::nullopt;
   const Landmark* landmark = setup_.world.landmarks.find(gaze_.current()->landmark);
   const ImageExtent extent = image_extent(*observation_, landmark);
   const servo::GazeSighting sighting{extent.centre, extent.radius_px};
   if (then.stamp == now_) return sighting;
   const auto moved =
-      watcher_.motion(then, motion_.belief_at(then.stamp, belief()), sensor_, belief(), *landmark);
+      watcher_.motion(then, motion_.belief_at(then.stamp, belief()), shot_, belief(), *landmark);
   if (!moved) return sighting;
   return servo::GazeSighting{sighting.uv + moved->shift, sighting.radius_px * moved->growth};
 }

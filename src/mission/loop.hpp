@@ -69,6 +69,7 @@ class Loop {
 
   const MissionSetup& setup_;
   std::uint64_t seed_;
+  Rig rig_;
   const std::vector<Listener*>& listeners_;
 
   sim::Simulator simulator_;
@@ -95,7 +96,7 @@ class Loop {
   Duration dt_;
   OdometryIncrement odometry_;
   HeadReading head_;
-  SensorSnapshot sensor_;
+  Shot shot_;
   BaseRates command_;
   double travelled_m_ = 0.0;
   bool stopped_to_look_ = false;

@@ -70,13 +70,13 @@ void Loop::recover(const imaging::Frame* frame) {
     begin_sweep();
   }
   // The frame must have been exposed at this stop, standing still.
-  const Stamp exposed = frame != nullptr ? delivered_->sensor.stamp : Stamp{};
+  const Stamp exposed = frame != nullptr ? delivered_->shot.stamp : Stamp{};
   if (look_around_.ready(now_, head_, exposed)) {
     const Stopwatch watch;
-    const SensorSnapshot& sensor = delivered_->sensor;
-    for (auto& seen : watcher_.survey(*frame, sensor)) sweep_.sightings.push_back(seen);
-    sweep_.views.push_back(sensor);
-    for (const auto& seen : watcher_.survey_points(*frame, sensor)) read_code(seen);
+    const Shot& shot = delivered_->shot;
+    for (auto& seen : watcher_.survey(*frame, shot)) sweep_.sightings.push_back(seen);
+    sweep_.views.push_back(shot);
+    for (const auto& seen : watcher_.survey_points(*frame, shot)) read_code(seen);
     timing_.track += watch.elapsed_ms();
     if (!look_around_.next()) {
       relocalize();
@@ -90,9 +90,9 @@ void Loop::recover(const imaging::Frame* frame) {
 
 /// A pattern says who it is and where the robot stands: the surest one of a sweep counts.
 void Loop::read_code(const PointsObservation& seen) {
-  localization::PatternFixLocalizer fix(setup_.world.landmarks, setup_.robot.robot.head,
+  localization::PatternFixLocalizer fix(setup_.world.landmarks, setup_.on_ground(),
                                         pattern_fix_params(setup_));
-  fix.reset(sensor_of(seen).stamp, {});
+  fix.reset(shot_of(seen).stamp, {});
   if (fix.update(seen).status != localization::UpdateStatus::fused) return;
   const Prior found{fix.belief().pose, fix.belief().covariance};
   if (!by_code_ || found.covariance.trace() < by_code_->covariance.trace()) by_code_ = found;

@@ -14,10 +14,10 @@ Landmark outline_of(const Landmark& landmark) {
 }
 
 /// Of the landmark's outline.
-std::optional<Ellipse> expected_image(const SensorSnapshot& sensor, const Belief& belief,
-                                      const Landmark& landmark, const HeadGeometry& head) {
-  const Eigen::Isometry3d wMc = to_isometry(belief.pose) * camera_in_base(head, sensor.head);
-  return localization::disc_image(outline_of(landmark), sensor.intrinsics, wMc);
+std::optional<Ellipse> expected_image(const Shot& shot, const Belief& belief,
+                                      const Landmark& landmark, const RigOnGround& on_ground) {
+  const Eigen::Isometry3d wMc = on_ground.wMc(shot.camera, shot.head, belief.pose);
+  return localization::disc_image(outline_of(landmark), pinhole(shot), wMc);
 }
 
 template <typename Shape>
@@ -30,19 +30,19 @@ std::unique_ptr<tracking::PointTracker> tracker_of(const std::string& name,
   return needed ? tracking::make_point_tracker(name, {false, map}) : nullptr;
 }
 
-PointsObservation observed(const tracking::PointsFeature& feature, const SensorSnapshot& sensor,
+PointsObservation observed(const tracking::PointsFeature& feature, const Shot& shot,
                            std::optional<LandmarkId> expected) {
-  return {sensor, expected, *feature.landmark, feature.points, feature.confidence};
+  return {shot, expected, *feature.landmark, feature.points, feature.confidence};
 }
 
 }  // namespace
 
-Watcher::Watcher(const std::string& tracker, const LandmarkMap& map, HeadGeometry head,
+Watcher::Watcher(const std::string& tracker, const LandmarkMap& map, RigOnGround on_ground,
                  SensorNoise noise)
     : tracker_(tracking::make_ellipse_tracker(tracker)),
       patterns_(tracker_of<PatternShape>("pattern", map)),
       tags_(tracker_of<TagShape>("tag", map)),
-      head_(std::move(head)),
+      on_ground_(std::move(on_ground)),
       noise_(noise) {}
 
 tracking::PointTracker* Watcher::point_tracker(const Landmark& landmark) const {
@@ -51,12 +51,11 @@ tracking::PointTracker* Watcher::point_tracker(const Landmark& landmark) const {
   return nullptr;
 }
 
-std::optional<tracking::EllipsePrediction> Watcher::predict(const SensorSnapshot& sensor,
-                                                            const Belief& belief,
+std::optional<tracking::EllipsePrediction> Watcher::predict(const Shot& shot, const Belief& belief,
                                                             const Landmark& landmark) const {
-  const auto image = expected_image(sensor, belief, landmark, head_);
+  const auto image = expected_image(shot, belief, landmark, on_ground_);
   const auto model =
-      localization::predict_disc(outline_of(landmark), sensor, head_, belief.pose, {});
+      localization::predict_disc(outline_of(landmark), shot, on_ground_, belief.pose, {});
   if (!image || !model) return std::nullopt;
   const double angle =
       noise_.look_angle * noise_.look_angle + noise_.reading_angle * noise_.reading_angle;
@@ -72,14 +71,14 @@ std::optional<tracking::EllipsePrediction> Watcher::predict(const SensorSnapshot
 }
 
 std::optional<tracking::PointsPrediction> Watcher::predict_points(
-    const SensorSnapshot& sensor, const Belief& belief, const Landmark& landmark,
+    const Shot& shot, const Belief& belief, const Landmark& landmark,
     const tracking::EllipsePrediction& outline) const {
-  const Eigen::Isometry3d wMc = to_isometry(belief.pose) * camera_in_base(head_, sensor.head);
+  const Eigen::Isometry3d wMc = on_ground_.wMc(shot.camera, shot.head, belief.pose);
   const Eigen::Isometry3d cMl = wMc.inverse(Eigen::Isometry) * landmark.wMl;
   tracking::PointsPrediction prediction;
   prediction.landmark = landmark.id;
   for (const auto& point : localization::landmark_points(landmark)) {
-    const auto image = localization::predict_point(point, sensor.intrinsics, cMl);
+    const auto image = localization::predict_point(point, pinhole(shot), cMl);
     if (image) prediction.points.push_back({point.label, image->uv, Eigen::Matrix2d::Identity()});
   }
   if (prediction.points.empty()) return std::nullopt;
@@ -88,10 +87,9 @@ std::optional<tracking::PointsPrediction> Watcher::predict_points(
   return prediction;
 }
 
-Sighting Watcher::watch(const imaging::Frame& frame, servo::TrackRequest request,
-                        const SensorSnapshot& sensor, const Belief& belief,
-                        const Landmark& landmark) {
-  const auto outline = predict(sensor, belief, landmark);
+Sighting Watcher::watch(const imaging::Frame& frame, servo::TrackRequest request, const Shot& shot,
+                        const Belief& belief, const Landmark& landmark) {
+  const auto outline = predict(shot, belief, landmark);
   Sighting sighting;
   std::optional<Eigen::Vector2d> moved;
   if (outline) {
@@ -99,18 +97,18 @@ Sighting Watcher::watch(const imaging::Frame& frame, servo::TrackRequest request
     if (settled_) moved = Eigen::Vector2d(outline->ellipse.u, outline->ellipse.v) - *settled_;
   }
   if (tracking::PointTracker* tracker = point_tracker(landmark)) {
-    const auto points = outline ? predict_points(sensor, belief, landmark, *outline) : std::nullopt;
+    const auto points = outline ? predict_points(shot, belief, landmark, *outline) : std::nullopt;
     const auto feature = watch_points(*tracker, frame, request, points, moved);
     sighting.status = feature.status;
     if (feature.status == tracking::FeatureStatus::found && feature.landmark)
-      sighting.observation = observed(feature, sensor, landmark.id);
+      sighting.observation = observed(feature, shot, landmark.id);
     return sighting;
   }
   const auto feature = watch_disc(frame, request, outline, moved);
   sighting.status = feature.status;
   if (feature.status == tracking::FeatureStatus::found)
     sighting.observation =
-        EllipseObservation{sensor, landmark.id, feature.ellipse, feature.covariance};
+        EllipseObservation{shot, landmark.id, feature.ellipse, feature.covariance};
   return sighting;
 }
 
@@ -137,39 +135,38 @@ tracking::PointsFeature Watcher::watch_points(
   return prediction ? tracker.acquire(frame, *prediction) : tracking::PointsFeature{};
 }
 
-void Watcher::settle(const SensorSnapshot& sensor, const Belief& belief, const Landmark& landmark) {
-  const auto image = expected_image(sensor, belief, landmark, head_);
+void Watcher::settle(const Shot& shot, const Belief& belief, const Landmark& landmark) {
+  const auto image = expected_image(shot, belief, landmark, on_ground_);
   settled_ = image ? std::optional(Eigen::Vector2d(image->u, image->v)) : std::nullopt;
 }
 
-std::optional<ImageMotion> Watcher::motion(const SensorSnapshot& from, const Belief& belief_from,
-                                           const SensorSnapshot& to, const Belief& belief_to,
+std::optional<ImageMotion> Watcher::motion(const Shot& from, const Belief& belief_from,
+                                           const Shot& to, const Belief& belief_to,
                                            const Landmark& landmark) const {
-  const auto first = expected_image(from, belief_from, landmark, head_);
-  const auto second = expected_image(to, belief_to, landmark, head_);
+  const auto first = expected_image(from, belief_from, landmark, on_ground_);
+  const auto second = expected_image(to, belief_to, landmark, on_ground_);
   if (!first || !second) return std::nullopt;
   return ImageMotion{{second->u - first->u, second->v - first->v}, second->a / first->a};
 }
 
 std::vector<PointsObservation> Watcher::survey_points(const imaging::Frame& frame,
-                                                      const SensorSnapshot& sensor) {
+                                                      const Shot& shot) {
   std::vector<PointsObservation> observations;
   for (tracking::PointTracker* tracker : {patterns_.get(), tags_.get()}) {
     if (tracker == nullptr) continue;
     for (const auto& feature : tracker->find_all(frame))
       if (feature.status == tracking::FeatureStatus::found && feature.landmark)
-        observations.push_back(observed(feature, sensor, std::nullopt));
+        observations.push_back(observed(feature, shot, std::nullopt));
   }
   return observations;
 }
 
-std::vector<EllipseObservation> Watcher::survey(const imaging::Frame& frame,
-                                                const SensorSnapshot& sensor) {
+std::vector<EllipseObservation> Watcher::survey(const imaging::Frame& frame, const Shot& shot) {
   canvas_.attach(frame);
   std::vector<EllipseObservation> observations;
   for (const auto& feature : tracker_->find_all(canvas_)) {
     EllipseObservation observation;
-    observation.sensor = sensor;
+    observation.shot = shot;
     observation.ellipse = feature.ellipse;
     observation.covariance = feature.covariance;
     observations.push_back(observation);

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "vigia/core/belief.hpp"
-#include "vigia/core/head.hpp"
 #include "vigia/core/landmark.hpp"
+#include "vigia/core/rig.hpp"
 #include "vigia/core/sensor_noise.hpp"
 #include "vigia/imaging/canvas.hpp"
 #include "vigia/servo/gaze_controller.hpp"
@@ -32,27 +32,26 @@ struct ImageMotion {
 class Watcher {
  public:
   /// @p tracker: of discs. Patterns and tags of @p map have their own.
-  Watcher(const std::string& tracker, const LandmarkMap& map, HeadGeometry head, SensorNoise noise);
+  Watcher(const std::string& tracker, const LandmarkMap& map, RigOnGround on_ground,
+          SensorNoise noise);
 
   /// Acquires or tracks @p landmark in @p frame. @p request is not none.
-  Sighting watch(const imaging::Frame& frame, servo::TrackRequest request,
-                 const SensorSnapshot& sensor, const Belief& belief, const Landmark& landmark);
+  Sighting watch(const imaging::Frame& frame, servo::TrackRequest request, const Shot& shot,
+                 const Belief& belief, const Landmark& landmark);
 
   /// Remembers where the belief, after this tick's update, puts the landmark: the next frame's
   /// expected motion counts from there.
-  void settle(const SensorSnapshot& sensor, const Belief& belief, const Landmark& landmark);
+  void settle(const Shot& shot, const Belief& belief, const Landmark& landmark);
 
   /// What became of the landmark's image from one instant to another; nothing when it has none.
-  std::optional<ImageMotion> motion(const SensorSnapshot& from, const Belief& belief_from,
-                                    const SensorSnapshot& to, const Belief& belief_to,
-                                    const Landmark& landmark) const;
+  std::optional<ImageMotion> motion(const Shot& from, const Belief& belief_from, const Shot& to,
+                                    const Belief& belief_to, const Landmark& landmark) const;
 
   /// Every disc of a whole frame, as observations of unknown identity.
-  std::vector<EllipseObservation> survey(const imaging::Frame& frame, const SensorSnapshot& sensor);
+  std::vector<EllipseObservation> survey(const imaging::Frame& frame, const Shot& shot);
 
   /// Every pattern and tag of the map that a whole frame shows.
-  std::vector<PointsObservation> survey_points(const imaging::Frame& frame,
-                                               const SensorSnapshot& sensor);
+  std::vector<PointsObservation> survey_points(const imaging::Frame& frame, const Shot& shot);
 
  private:
   tracking::PointTracker* point_tracker(const Landmark& landmark) const;
@@ -64,16 +63,15 @@ class Watcher {
       const std::optional<tracking::PointsPrediction>& prediction,
       const std::optional<Eigen::Vector2d>& moved);
   std::optional<tracking::PointsPrediction> predict_points(
-      const SensorSnapshot& sensor, const Belief& belief, const Landmark& landmark,
+      const Shot& shot, const Belief& belief, const Landmark& landmark,
       const tracking::EllipsePrediction& outline) const;
-  std::optional<tracking::EllipsePrediction> predict(const SensorSnapshot& sensor,
-                                                     const Belief& belief,
+  std::optional<tracking::EllipsePrediction> predict(const Shot& shot, const Belief& belief,
                                                      const Landmark& landmark) const;
 
   std::unique_ptr<tracking::EllipseTracker> tracker_;
   std::unique_ptr<tracking::PointTracker> patterns_;  ///< null when the map has none
   std::unique_ptr<tracking::PointTracker> tags_;      ///< null when the map has none
-  HeadGeometry head_;
+  RigOnGround on_ground_;
   SensorNoise noise_;
   imaging::Canvas canvas_;
   std::optional<Eigen::Vector2d> settled_;

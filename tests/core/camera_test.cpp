@@ -58,8 +58,8 @@ TEST(Camera, ProjectsByTheFormulaOfViSP) {
 }
 
 TEST(Camera, SeesNothingBehindIt) {
-  EXPECT_FALSE(project({}, {0.1, 0.1, -1.0}));
-  EXPECT_FALSE(project({}, {0.1, 0.1, 0.0}));
+  EXPECT_FALSE(project(Intrinsics{}, {0.1, 0.1, -1.0}));
+  EXPECT_FALSE(project(Intrinsics{}, {0.1, 0.1, 0.0}));
 }
 
 TEST(Camera, SeesNothingBeyondTheFoldOfItsDistortion) {

@@ -73,10 +73,10 @@ TEST(Observation, OfTheInnerRingAloneShowsTheWholePatternsExtent) {
   EXPECT_NEAR(extent.radius_px, kPxPerM * extent_radius(landmark), 1e-9);
 }
 
-TEST(Observation, GivesItsSensorSnapshot) {
+TEST(Observation, GivesTheShotThatShowsIt) {
   EllipseObservation seen;
-  seen.sensor.look = 7;
-  EXPECT_EQ(sensor_of(seen).look, 7);
+  seen.shot.look = 7;
+  EXPECT_EQ(shot_of(seen).look, 7);
 }
 
 TEST(Belief, ItsPositionSigmaIsTheLongestAxisOfTheEllipse) {

@@ -39,9 +39,9 @@ struct Run {
 
 Run run_filter(const Drive& drive, const EkfParams& params) {
   const LandmarkMap map = localization::test::room_landmarks();
-  EkfLocalizer ekf(map, drive.geometry, params, localization::test::room_plan());
+  EkfLocalizer ekf(map, {head_rig(drive.geometry), {}}, params, localization::test::room_plan());
   ekf.reset({}, drive.prior);
-  PosteriorBound bound(drive.prior.covariance, drive.geometry, drive.noise.sensor);
+  PosteriorBound bound(drive.prior.covariance, {head_rig(drive.geometry), {}}, drive.noise.sensor);
   Run run;
   std::vector<PoseSample> samples;
   Pose2 before = drive.start;
@@ -53,7 +53,7 @@ Run run_filter(const Drive& drive, const EkfParams& params) {
       const auto result = ekf.update(*step.seen);
       const bool fused = result.status == localization::UpdateStatus::fused;
       fused ? ++run.fused : ++run.other;
-      bound.update(step.pose, *map.find(*step.seen->expected), step.seen->sensor, step.bias,
+      bound.update(step.pose, *map.find(*step.seen->expected), step.seen->shot, step.bias,
                    measured_disc_covariance(*step.seen));
     }
     before = step.pose;

@@ -34,9 +34,9 @@ void run(const DriveNoise& noise, std::uint64_t seed, PointsCampaign& campaign) 
   params.odometry = noise.odometry;
   params.sensor = noise.sensor;
   params.centre_floor_px = 0.0;
-  EkfLocalizer ekf(map, drive.geometry, params, localization::test::room_plan());
+  EkfLocalizer ekf(map, {head_rig(drive.geometry), {}}, params, localization::test::room_plan());
   ekf.reset({}, drive.prior);
-  PosteriorBound bound(drive.prior.covariance, drive.geometry, noise.sensor);
+  PosteriorBound bound(drive.prior.covariance, {head_rig(drive.geometry), {}}, noise.sensor);
   campaign.nees.emplace_back();
   campaign.errors.push_back(0.0);
   campaign.bounds.push_back(0.0);
@@ -50,7 +50,7 @@ void run(const DriveNoise& noise, std::uint64_t seed, PointsCampaign& campaign) 
       const bool fused = ekf.update(*seen[i]).status == localization::UpdateStatus::fused;
       fused ? ++campaign.fused : ++campaign.other;
       const Landmark& landmark = *map.find(seen[i]->landmark);
-      ASSERT_TRUE(bound.update(step.pose, landmark, seen[i]->sensor, step.bias,
+      ASSERT_TRUE(bound.update(step.pose, landmark, seen[i]->shot, step.bias,
                                localization::seen_points(landmark, *seen[i])));
     }
     const PoseSample sample{step.pose, ekf.belief().pose, ekf.belief().covariance};

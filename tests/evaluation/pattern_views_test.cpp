@@ -42,9 +42,9 @@ TEST(ViewBound, IsNothingWhenThePointsDoNotFixThePose) {
   const PatternView view = views_at(0.5, 1).front();
   auto points = localization::seen_points(view.landmark, view.seen);
   const Eigen::Isometry3d cMl = view.wMc.inverse() * view.landmark.wMl;
-  ASSERT_TRUE(view_bound(points, view.seen.sensor.intrinsics, cMl));
+  ASSERT_TRUE(view_bound(points, pinhole(view.seen.shot), cMl));
   points.resize(2);
-  EXPECT_FALSE(view_bound(points, view.seen.sensor.intrinsics, cMl));
+  EXPECT_FALSE(view_bound(points, pinhole(view.seen.shot), cMl));
 }
 
 /// Of one view seen many times, the ratio of the refined pose's rms error to the bound, and what

@@ -20,9 +20,9 @@ TEST(PosteriorBound, EqualsTheCovarianceOfAFilterThatSitsOnTheTruth) {
   params.odometry = drive.noise.odometry;
   params.centre_floor_px = 0.0;
   params.size_floor = 0.0;
-  localization::EkfLocalizer ekf(map, drive.geometry, params);
+  localization::EkfLocalizer ekf(map, {head_rig(drive.geometry), {}}, params);
   ekf.reset({}, {drive.start, drive.prior.covariance});
-  PosteriorBound bound(drive.prior.covariance, drive.geometry, drive.noise.sensor);
+  PosteriorBound bound(drive.prior.covariance, {head_rig(drive.geometry), {}}, drive.noise.sensor);
   RandomStream random(1, "unused");
   Pose2 before = drive.start;
   for (const DriveStep& step : drive.steps) {
@@ -31,14 +31,14 @@ TEST(PosteriorBound, EqualsTheCovarianceOfAFilterThatSitsOnTheTruth) {
     before = step.pose;
     if (!step.seen) continue;
     const Landmark& landmark = *map.find(*step.seen->expected);
-    const SensorSnapshot sensor = localization::test::aimed_sensor(
-        landmark, drive.geometry, step.pose, {}, step.seen->sensor.look, step.seen->sensor.stamp);
-    EllipseObservation seen = localization::test::observe(landmark, sensor, drive.geometry,
-                                                          step.pose, {}, 0.0, 0.0, random);
+    const Shot shot = localization::test::aimed_shot(landmark, drive.geometry, step.pose, {},
+                                                     step.seen->shot.look, step.seen->shot.stamp);
+    EllipseObservation seen = localization::test::observe(landmark, shot, drive.geometry, step.pose,
+                                                          {}, 0.0, 0.0, random);
     seen.covariance = step.seen->covariance;
     ASSERT_EQ(ekf.update(seen).status, localization::UpdateStatus::fused);
-    ASSERT_TRUE(bound.update(step.pose, landmark, sensor, {},
-                             localization::measured_disc_covariance(seen)));
+    ASSERT_TRUE(
+        bound.update(step.pose, landmark, shot, {}, localization::measured_disc_covariance(seen)));
     ASSERT_TRUE(ekf.belief().covariance.isApprox(bound.covariance(), 1e-6));
   }
 }

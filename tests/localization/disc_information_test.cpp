@@ -32,8 +32,8 @@ TEST(DiscInformation, EqualsWhatOneLookTeachesTheFilter) {
   const Eigen::Matrix3d prior = sigma.cwiseAbs2().asDiagonal();
   ekf.reset({}, {kDiscPose, prior});
   RandomStream random(1, "unused");
-  const SensorSnapshot sensor = test::aimed_sensor(landmark, {}, kDiscPose, {}, 1, {});
-  EllipseObservation seen = test::observe(landmark, sensor, {}, kDiscPose, {}, 0.0, 0.0, random);
+  const Shot shot = test::aimed_shot(landmark, {}, kDiscPose, {}, 1, {});
+  EllipseObservation seen = test::observe(landmark, shot, {}, kDiscPose, {}, 0.0, 0.0, random);
   seen.covariance = 0.02 * 0.02 * Eigen::Matrix<double, 5, 5>::Identity();
   ASSERT_EQ(ekf.update(seen).status, UpdateStatus::fused);
   const Eigen::Matrix3d expected = (prior.inverse() + *information).inverse();

@@ -77,7 +77,7 @@ Eigen::Isometry3d camera_at(const Eigen::Vector3d& eye, double yaw, double pitch
 
 struct Case {
   Landmark landmark;
-  SensorSnapshot sensor;
+  Shot shot;
   Pose2 pose;
   LookBias bias;
 };
@@ -88,23 +88,23 @@ Case random_case(RandomStream& random, double kdu) {
   c.landmark = disc(1, 4.0, 0.0, random.uniform(0.5, 2.0), 180.0);
   c.pose = {random.uniform(-2.0, 2.5), random.uniform(-2.0, 2.0), random.uniform(-kPi, kPi)};
   c.bias = {random.uniform(-0.01, 0.01), random.uniform(-0.01, 0.01), random.uniform(-0.01, 0.01)};
-  c.sensor = test::aimed_sensor(c.landmark, {}, c.pose, c.bias, 1, {});
-  c.sensor.intrinsics.kdu = kdu;
-  const double offset = 100.0 / c.sensor.intrinsics.px;
-  c.sensor.head.pan += random.uniform(-2.0 * offset, 2.0 * offset);
-  c.sensor.head.tilt += random.uniform(-offset, offset);
+  c.shot = test::aimed_shot(c.landmark, {}, c.pose, c.bias, 1, {});
+  std::get<Intrinsics>(c.shot.model).kdu = kdu;
+  const double offset = 100.0 / pinhole(c.shot).px;
+  c.shot.head.pan += random.uniform(-2.0 * offset, 2.0 * offset);
+  c.shot.head.tilt += random.uniform(-offset, offset);
   return c;
 }
 
-Eigen::Vector3d predicted_z(const Case& c, const HeadGeometry& geometry,
+Eigen::Vector3d predicted_z(const Case& c, const RigOnGround& on_ground,
                             const Eigen::Matrix<double, 6, 1>& step) {
   const Pose2 pose{c.pose.x + step(0), c.pose.y + step(1), c.pose.theta + step(2)};
   const LookBias bias{c.bias.pan + step(3), c.bias.tilt + step(4), c.bias.log_focal + step(5)};
-  return predict_disc(c.landmark, c.sensor, geometry, pose, bias)->z;
+  return predict_disc(c.landmark, c.shot, on_ground, pose, bias)->z;
 }
 
-void expect_jacobians_match(const Case& c, const HeadGeometry& geometry) {
-  const auto predicted = predict_disc(c.landmark, c.sensor, geometry, c.pose, c.bias);
+void expect_jacobians_match(const Case& c, const RigOnGround& on_ground) {
+  const auto predicted = predict_disc(c.landmark, c.shot, on_ground, c.pose, c.bias);
   ASSERT_TRUE(predicted);
   Eigen::Matrix<double, 3, 6> analytic;
   analytic << predicted->dz_dpose, predicted->dz_dbias;
@@ -113,7 +113,7 @@ void expect_jacobians_match(const Case& c, const HeadGeometry& geometry) {
     Eigen::Matrix<double, 6, 1> step = Eigen::Matrix<double, 6, 1>::Zero();
     step(i) = kStep;
     const Eigen::Vector3d numeric =
-        (predicted_z(c, geometry, step) - predicted_z(c, geometry, -step)) / (2.0 * kStep);
+        (predicted_z(c, on_ground, step) - predicted_z(c, on_ground, -step)) / (2.0 * kStep);
     for (Eigen::Index row = 0; row < 3; ++row)
       EXPECT_NEAR(analytic(row, i), numeric(row), 1e-6 * (1.0 + std::abs(numeric(row))))
           << "row " << row << ", column " << i;
@@ -131,7 +131,7 @@ TEST(DiscModel, JacobiansEqualFiniteDifferencesAtTinyOffsets) {
   c.landmark = disc(1, 3.0, 0.0, 1.0, 180.0);
   c.pose = {1e-7, -1e-7, 1e-7};
   c.bias = {1e-7, -1e-7, 1e-7};
-  c.sensor.intrinsics.kdu = 1e-7;
+  std::get<Intrinsics>(c.shot.model).kdu = 1e-7;
   expect_jacobians_match(c, {});
 }
 
@@ -142,18 +142,47 @@ TEST(DiscModel, JacobiansEqualFiniteDifferencesAtRandomViews) {
   geometry.camera_offset_h = {0.05, -0.02, 0.03};
   for (int i = 0; i < 200; ++i) {
     const double kdu = i % 3 == 0 ? 0.0 : random.uniform(-0.05, 0.1);
-    expect_jacobians_match(random_case(random, kdu), geometry);
+    expect_jacobians_match(random_case(random, kdu), {head_rig(geometry), {}});
   }
+}
+
+TEST(DiscModel, JacobiansEqualFiniteDifferencesOnASlope) {
+  RandomStream random(3, "slope");
+  // The ground turns about the spot where the robot stands, so that the disc stays in view.
+  const Eigen::Matrix3d tilt =
+      Eigen::AngleAxisd(0.05, Eigen::Vector3d(0.6, 0.8, 0.0)).toRotationMatrix();
+  for (int i = 0; i < 100; ++i) {
+    const Case c = random_case(random, 0.03);
+    const Eigen::Vector3d stand(c.pose.x, c.pose.y, 0.0);
+    Eigen::Isometry3d wMg = Eigen::Isometry3d::Identity();
+    wMg.linear() = tilt;
+    wMg.translation() = stand - tilt * stand;
+    expect_jacobians_match(c, {Rig{}, Ground(wMg)});
+  }
+}
+
+TEST(DiscModel, OfAFixedCameraIsBlindToTheHead) {
+  Case c;
+  c.landmark = disc(1, 3.0, 0.0, 1.0, 180.0);
+  FixedMount mount;
+  mount.rMc = camera_in_base(HeadGeometry{}, {0.05, -0.02});
+  Camera camera;
+  camera.mount = mount;
+  const RigOnGround on_ground{{{camera}}, {}};
+  expect_jacobians_match(c, on_ground);
+  const auto predicted = predict_disc(c.landmark, c.shot, on_ground, c.pose, c.bias);
+  ASSERT_TRUE(predicted);
+  EXPECT_TRUE(predicted->dz_dbias.leftCols<2>().isZero());
 }
 
 TEST(DiscModel, ImageEqualsTheConicThroughTheProjectedRim) {
   RandomStream random(2, "conic");
   for (int i = 0; i < 20; ++i) {
     Case c = random_case(random, 0.0);
-    const Eigen::Isometry3d wMc = to_isometry(c.pose) * camera_in_base({}, c.sensor.head);
-    const auto image = disc_image(c.landmark, c.sensor.intrinsics, wMc);
+    const Eigen::Isometry3d wMc = to_isometry(c.pose) * camera_in_base({}, c.shot.head);
+    const auto image = disc_image(c.landmark, pinhole(c.shot), wMc);
     ASSERT_TRUE(image);
-    const Ellipse fit = fitted_conic(c.landmark, c.sensor.intrinsics, wMc);
+    const Ellipse fit = fitted_conic(c.landmark, pinhole(c.shot), wMc);
     EXPECT_NEAR(image->u, fit.u, 1e-7);
     EXPECT_NEAR(image->v, fit.v, 1e-7);
     EXPECT_NEAR(image->a, fit.a, 1e-7);
@@ -206,11 +235,11 @@ TEST(DiscModel, PredictionAgreesWithTheImage) {
   RandomStream random(3, "agreement");
   for (int i = 0; i < 50; ++i) {
     const Case c = random_case(random, 0.05);
-    const auto predicted = predict_disc(c.landmark, c.sensor, {}, c.pose, c.bias);
-    Intrinsics intrinsics = c.sensor.intrinsics;
+    const auto predicted = predict_disc(c.landmark, c.shot, {}, c.pose, c.bias);
+    Intrinsics intrinsics = pinhole(c.shot);
     intrinsics.px *= std::exp(c.bias.log_focal);
     intrinsics.py *= std::exp(c.bias.log_focal);
-    const HeadAngles head{c.sensor.head.pan + c.bias.pan, c.sensor.head.tilt + c.bias.tilt};
+    const HeadAngles head{c.shot.head.pan + c.bias.pan, c.shot.head.tilt + c.bias.tilt};
     EllipseObservation seen;
     seen.ellipse =
         *disc_image(c.landmark, intrinsics, to_isometry(c.pose) * camera_in_base({}, head));

@@ -106,9 +106,9 @@ inline Drive simulate_drive(const DriveNoise& noise, std::uint64_t seed) {
       step.bias = draw_bias(sensor, noise.sensor);
     }
     if (phase < kDwell && landmark != nullptr) {
-      const SensorSnapshot snapshot =
-          aimed_sensor(*landmark, drive.geometry, pose, step.bias, 1 + tick / kPeriod, to);
-      step.seen = observe(*landmark, snapshot, drive.geometry, pose, step.bias,
+      const Shot shot =
+          aimed_shot(*landmark, drive.geometry, pose, step.bias, 1 + tick / kPeriod, to);
+      step.seen = observe(*landmark, shot, drive.geometry, pose, step.bias,
                           noise.sensor.reading_angle, noise.pixel_sigma, sensor);
     }
     drive.steps.push_back(step);

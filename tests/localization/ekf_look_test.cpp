@@ -37,8 +37,8 @@ Look near_look() {
   const LookBias bias{0.004, -0.003, 0.002};
   for (int i = 0; i < kImages; ++i) {
     const Stamp now = Stamp::from_seconds(kTick * i);
-    const SensorSnapshot sensor = test::aimed_sensor(look.landmark, {}, pose, bias, 1, now);
-    look.images.push_back(test::observe(look.landmark, sensor, {}, pose, bias, 0.0, 0.01, random));
+    const Shot shot = test::aimed_shot(look.landmark, {}, pose, bias, 1, now);
+    look.images.push_back(test::observe(look.landmark, shot, {}, pose, bias, 0.0, 0.01, random));
     const Stamp next = Stamp::from_seconds(kTick * (i + 1));
     look.measured.push_back(arc_increment(0.3, 0.5, now, next));
     pose = move(pose, arc_increment(0.32, 0.53, now, next));
@@ -117,7 +117,7 @@ class BatchLook {
   }
 
   Eigen::Vector3d image_residual(const Vector6& x, const EllipseObservation& image) const {
-    const auto predicted = predict_disc(look_.landmark, image.sensor, {},
+    const auto predicted = predict_disc(look_.landmark, image.shot, {},
                                         Pose2::from_vector(x.head<3>()), {x(3), x(4), x(5)});
     const Eigen::Vector3d floor(params_.centre_floor_px, params_.centre_floor_px,
                                 params_.size_floor);

@@ -22,12 +22,12 @@ EkfParams points_params() {
 
 PointsObservation seen_by(const Landmark& landmark, double sigma, std::uint64_t seed) {
   RandomStream random(seed, "points");
-  SensorSnapshot sensor;
-  sensor.look = 1;
+  Shot shot;
+  shot.look = 1;
   const HeadAngles aim = aim_at({}, to_isometry(kTruth).inverse() * landmark.centre_w());
-  sensor.head = {aim.pan - kBias.pan, aim.tilt - kBias.tilt};
-  sensor.intrinsics = test::zoom_calibration().at(24.0);
-  return test::observe_points(landmark, sensor, {}, to_isometry(kTruth), kBias, 0.0, sigma, random);
+  shot.head = {aim.pan - kBias.pan, aim.tilt - kBias.tilt};
+  shot.model = test::zoom_calibration().at(24.0);
+  return test::observe_points(landmark, shot, {}, to_isometry(kTruth), kBias, 0.0, sigma, random);
 }
 
 Prior prior_about(const Pose2& pose) {
@@ -37,9 +37,8 @@ Prior prior_about(const Pose2& pose) {
 
 /// Hᵀy, which does not depend on how the points were compressed.
 Vector6 gradient_at(const PointsObservation& seen, const Vector6& x) {
-  const auto measured =
-      measure_points(seen_points(kSeenPattern, seen), kSeenPattern.wMl, seen.sensor, {},
-                     Pose2::from_vector(x.head<3>()), {x(3), x(4), x(5)});
+  const auto measured = measure_points(seen_points(kSeenPattern, seen), kSeenPattern.wMl, seen.shot,
+                                       {}, Pose2::from_vector(x.head<3>()), {x(3), x(4), x(5)});
   return measured->H.transpose() * measured->y;
 }
 
@@ -47,8 +46,8 @@ TEST(EkfPoints, TheCompressedJacobianEqualsFiniteDifferences) {
   const PointsObservation seen = seen_by(kSeenPattern, 0.0, 1);
   Vector6 truth;
   truth << kTruth.vector(), kBias.pan, kBias.tilt, kBias.log_focal;
-  const auto measured = measure_points(seen_points(kSeenPattern, seen), kSeenPattern.wMl,
-                                       seen.sensor, {}, kTruth, kBias);
+  const auto measured = measure_points(seen_points(kSeenPattern, seen), kSeenPattern.wMl, seen.shot,
+                                       {}, kTruth, kBias);
   ASSERT_TRUE(measured);
   EXPECT_LT(measured->chi2, 1e-12);
   const Matrix6 information = measured->H.transpose() * measured->H;
@@ -72,7 +71,7 @@ TEST(EkfPoints, OneImageTeachesWhatItsInformationSays) {
   // The state is a stationary point of prior and points, its covariance the inverse information.
   const Vector6 x = ekf.state().mean;
   const auto points = seen_points(kSeenPattern, seen, points_params().centre_floor_px);
-  const auto measured = measure_points(points, kSeenPattern.wMl, seen.sensor, {},
+  const auto measured = measure_points(points, kSeenPattern.wMl, seen.shot, {},
                                        Pose2::from_vector(x.head<3>()), {x(3), x(4), x(5)});
   Matrix6 information = Matrix6::Zero();
   information.topLeftCorner<3, 3>() = prior.covariance.inverse();
@@ -141,9 +140,9 @@ TEST(EkfPoints, RightImagesPassTheGateAsOftenAsItSays) {
                   kTruth.theta + sigma.z() * random.normal()};
     ekf.reset({}, prior);
     const LookBias bias = test::draw_bias(random, params.sensor);
-    SensorSnapshot sensor = seen_by(kSeenPattern, 0.0, 1).sensor;
+    Shot shot = seen_by(kSeenPattern, 0.0, 1).shot;
     const auto seen =
-        test::observe_points(kSeenPattern, sensor, {}, to_isometry(kTruth), bias, 0.0, 0.1, random);
+        test::observe_points(kSeenPattern, shot, {}, to_isometry(kTruth), bias, 0.0, 0.1, random);
     const UpdateResult result = ekf.update(seen);
     if (result.status != UpdateStatus::fused) ++gated;
     nis += result.nis / kRuns;
@@ -161,7 +160,7 @@ TEST(EkfPoints, ImagesInReverseOrderGiveWhatTheyGiveInOrder) {
   std::vector<PointsObservation> images;
   for (int i = 0; i < 5; ++i) {
     images.push_back(seen_by(kSeenPattern, 0.1, static_cast<std::uint64_t>(i)));
-    images.back().sensor.stamp = Stamp::from_seconds(0.04 * i);
+    images.back().shot.stamp = Stamp::from_seconds(0.04 * i);
   }
   std::vector<OdometryIncrement> still;
   for (int i = 0; i < 4; ++i)

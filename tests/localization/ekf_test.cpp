@@ -28,9 +28,8 @@ Prior prior_at(const Pose2& pose, double sigma_m = 0.03, double sigma_rad = from
 EllipseObservation exact(const Landmark& landmark, const Pose2& truth, LookId look = 1,
                          double seconds = 0.0) {
   RandomStream random(1, "exact");
-  const SensorSnapshot sensor =
-      test::aimed_sensor(landmark, {}, truth, {}, look, Stamp::from_seconds(seconds));
-  EllipseObservation seen = test::observe(landmark, sensor, {}, truth, {}, 0.0, 0.0, random);
+  const Shot shot = test::aimed_shot(landmark, {}, truth, {}, look, Stamp::from_seconds(seconds));
+  EllipseObservation seen = test::observe(landmark, shot, {}, truth, {}, 0.0, 0.0, random);
   seen.covariance = 1e-4 * Eigen::Matrix<double, 5, 5>::Identity();
   return seen;
 }
@@ -311,7 +310,7 @@ TEST(Ekf, IsLostWhenTheFirstFramesOfItsLooksAreUnlikelyTogether) {
   for (int look = 1; look <= 5; ++look) {
     EXPECT_EQ(ekf.belief().status, BeliefStatus::tracking);
     EllipseObservation seen = exact(landmark, kPose, look);
-    seen.sensor.head.pan += (look % 2 == 0 ? 3.5 : -3.5) * params.sensor.look_angle;
+    seen.shot.head.pan += (look % 2 == 0 ? 3.5 : -3.5) * params.sensor.look_angle;
     EXPECT_EQ(ekf.update(seen).status, UpdateStatus::fused) << look;
   }
   EXPECT_EQ(ekf.belief().status, BeliefStatus::lost);
@@ -321,7 +320,8 @@ TEST(Ekf, TracksASimulatedDriveWithAlmostEveryFrameFused) {
   const test::Drive drive = simulate_drive({}, 1);
   EkfParams params;
   params.odometry = drive.noise.odometry;
-  EkfLocalizer ekf(test::room_landmarks(), drive.geometry, params, test::room_plan());
+  EkfLocalizer ekf(test::room_landmarks(), {head_rig(drive.geometry), {}}, params,
+                   test::room_plan());
   OdometryLocalizer odometry(drive.noise.odometry);
   ekf.reset({}, drive.prior);
   odometry.reset({}, drive.prior);

@@ -24,17 +24,17 @@ Eigen::Isometry3d on_the_ramp() {
 PointsObservation seen_from(const Eigen::Isometry3d& wMr, const Landmark& landmark,
                             const LookBias& bias, double sigma, RandomStream& random,
                             Stamp stamp = {}) {
-  SensorSnapshot sensor;
-  sensor.stamp = stamp;
-  sensor.look = 1;
+  Shot shot;
+  shot.stamp = stamp;
+  shot.look = 1;
   const HeadAngles aim = aim_at(kHead, wMr.inverse() * landmark.centre_w());
-  sensor.head = {aim.pan - bias.pan, aim.tilt - bias.tilt};
-  sensor.intrinsics = test::zoom_calibration().at(30.0);
-  return test::observe_points(landmark, sensor, kHead, wMr, bias, 0.0, sigma, random);
+  shot.head = {aim.pan - bias.pan, aim.tilt - bias.tilt};
+  shot.model = test::zoom_calibration().at(30.0);
+  return test::observe_points(landmark, shot, kHead, wMr, bias, 0.0, sigma, random);
 }
 
 PatternFixLocalizer localizer(const PatternFixParams& params = {}) {
-  return PatternFixLocalizer(LandmarkMap({kFixPattern}), kHead, params);
+  return PatternFixLocalizer(LandmarkMap({kFixPattern}), {head_rig(kHead), {}}, params);
 }
 
 TEST(PatternFix, OneImageOnARampGivesTheWholePose) {
@@ -140,7 +140,7 @@ TEST(PatternFix, CountsWhatItCannotUse) {
   RandomStream random(1, "unused");
   const Landmark tag = test::tag(7, 6.0, 2.9, 2.15, 180.0);
   const Landmark frontal = test::pattern(8, 6.0, 2.4, 1.3, 180.0);
-  PatternFixLocalizer fix(LandmarkMap({kFixPattern, tag, frontal}), kHead, {});
+  PatternFixLocalizer fix(LandmarkMap({kFixPattern, tag, frontal}), {head_rig(kHead), {}}, {});
   EXPECT_EQ(fix.update(EllipseObservation{}).status, UpdateStatus::unsupported);
   const Eigen::Isometry3d wMr = to_isometry({3.2, 2.4, 0.1});
   EXPECT_EQ(fix.update(seen_from(wMr, tag, {}, 0.0, random)).status, UpdateStatus::unsupported);

@@ -23,18 +23,18 @@ inline LandmarkMap room_points() {
 
 /// The points of a landmark as the head saw them from @p truth: its true angles and focal length
 /// are those of @p sensor with the look's bias and a white part.
-inline PointsObservation observe_points(const Landmark& landmark, const SensorSnapshot& sensor,
+inline PointsObservation observe_points(const Landmark& landmark, const Shot& shot,
                                         const HeadGeometry& geometry, const Eigen::Isometry3d& wMr,
                                         const LookBias& bias, double reading_angle,
                                         double pixel_sigma, RandomStream& random) {
-  HeadAngles head{sensor.head.pan + bias.pan, sensor.head.tilt + bias.tilt};
+  HeadAngles head{shot.head.pan + bias.pan, shot.head.tilt + bias.tilt};
   head.pan += reading_angle * random.normal();
   head.tilt += reading_angle * random.normal();
-  Intrinsics lens = sensor.intrinsics;
+  Intrinsics lens = pinhole(shot);
   lens.px *= std::exp(bias.log_focal);
   lens.py *= std::exp(bias.log_focal);
   const Eigen::Isometry3d wMc = wMr * camera_in_base(geometry, head);
-  return observe_points(landmark, sensor, lens, wMc.inverse() * landmark.wMl, pixel_sigma, random);
+  return observe_points(landmark, shot, lens, wMc.inverse() * landmark.wMl, pixel_sigma, random);
 }
 
 /// What a drive's looks would have seen with patterns and tags in place of the discs, one entry a
@@ -47,10 +47,9 @@ inline std::vector<std::optional<PointsObservation>> points_of(const Drive& driv
   for (const DriveStep& step : drive.steps) {
     seen.emplace_back();
     if (step.seen)
-      seen.back() =
-          observe_points(*map.find(*step.seen->expected), step.seen->sensor, drive.geometry,
-                         to_isometry(step.pose), step.bias, drive.noise.sensor.reading_angle,
-                         drive.noise.pixel_sigma, random);
+      seen.back() = observe_points(
+          *map.find(*step.seen->expected), step.seen->shot, drive.geometry, to_isometry(step.pose),
+          step.bias, drive.noise.sensor.reading_angle, drive.noise.pixel_sigma, random);
   }
   return seen;
 }

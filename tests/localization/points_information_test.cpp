@@ -30,19 +30,19 @@ TEST(PointsInformation, EqualsWhatOneImageTeachesTheFilter) {
     const Eigen::Vector3d sigma(0.05, 0.05, from_deg(1.0));
     const Eigen::Matrix3d prior = sigma.cwiseAbs2().asDiagonal();
     ekf.reset({}, {kPointsPose, prior});
-    SensorSnapshot sensor;
-    sensor.look = 1;
-    sensor.head = aim_at({}, to_isometry(kPointsPose).inverse() * landmark.centre_w());
+    Shot shot;
+    shot.look = 1;
+    shot.head = aim_at({}, to_isometry(kPointsPose).inverse() * landmark.centre_w());
     const double range =
         (to_isometry(kPointsPose) * Eigen::Vector3d(0.15, 0.0, 1.0) - landmark.centre_w()).norm();
     double reach = 0.0;
     for (const LandmarkPoint& point : landmark_points(landmark))
       reach = std::max(reach, point.centre_l.norm() + point.radius_m);
     const ZoomCalibration zoom = test::zoom_calibration();
-    sensor.intrinsics = zoom.at(zoom.zoom_for_focal(0.8 * 240.0 * range / reach));
+    shot.model = zoom.at(zoom.zoom_for_focal(0.8 * 240.0 * range / reach));
     RandomStream random(1, "unused");
     PointsObservation seen =
-        test::observe_points(landmark, sensor, {}, to_isometry(kPointsPose), {}, 0.0, 0.0, random);
+        test::observe_points(landmark, shot, {}, to_isometry(kPointsPose), {}, 0.0, 0.0, random);
     for (LabelledPoint& point : seen.points) point.covariance = 0.01 * Eigen::Matrix2d::Identity();
     ASSERT_EQ(ekf.update(seen).status, UpdateStatus::fused);
     const Eigen::Matrix3d expected = (prior.inverse() + *information).inverse();

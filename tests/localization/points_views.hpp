@@ -26,11 +26,11 @@ inline Intrinsics evi_d31() {
 }
 
 /// The points of a landmark as seen from cMl, each with white noise of @p sigma pixels.
-inline PointsObservation observe_points(const Landmark& landmark, const SensorSnapshot& sensor,
+inline PointsObservation observe_points(const Landmark& landmark, const Shot& shot,
                                         const Intrinsics& lens, const Eigen::Isometry3d& cMl,
                                         double sigma, RandomStream& random) {
   PointsObservation observation;
-  observation.sensor = sensor;
+  observation.shot = shot;
   observation.expected = landmark.id;
   observation.landmark = landmark.id;
   for (const LandmarkPoint& point : landmark_points(landmark)) {
@@ -47,9 +47,9 @@ inline PointsObservation observe_points(const Landmark& landmark, const SensorSn
 inline PointsObservation observe_points(const Landmark& landmark, const Intrinsics& intrinsics,
                                         const Eigen::Isometry3d& cMl, double sigma,
                                         RandomStream& random) {
-  SensorSnapshot sensor;
-  sensor.intrinsics = intrinsics;
-  return observe_points(landmark, sensor, intrinsics, cMl, sigma, random);
+  Shot shot;
+  shot.model = intrinsics;
+  return observe_points(landmark, shot, intrinsics, cMl, sigma, random);
 }
 
 }  // namespace vigia::localization::test

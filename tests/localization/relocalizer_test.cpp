@@ -34,17 +34,17 @@ struct SweepMaker {
   Sweep operator()(const Pose2& truth, RandomStream& random) const {
     Sweep sweep;
     for (int i = 0; i < 12; ++i) {
-      SensorSnapshot view;
+      Shot view;
       view.look = i + 1;
       view.head = {wrap_angle(from_deg(30.0 * i)), from_deg(8.0)};
-      view.intrinsics = test::zoom_calibration().at(8.0);
+      view.model = test::zoom_calibration().at(8.0);
       sweep.views.push_back(view);
       const LookBias bias = test::draw_bias(random, noise);
       const HeadAngles head{view.head.pan + bias.pan, view.head.tilt + bias.tilt};
       const Eigen::Isometry3d wMc = to_isometry(truth) * camera_in_base(geometry, head);
       for (const Landmark& landmark : map.all()) {
-        const auto image = disc_image(landmark, view.intrinsics, wMc);
-        if (image && detectable(landmark, *image, view.intrinsics, wMc.translation()))
+        const auto image = disc_image(landmark, pinhole(view), wMc);
+        if (image && detectable(landmark, *image, pinhole(view), wMc.translation()))
           sweep.sightings.push_back(
               test::observe(landmark, view, geometry, truth, bias, 0.0, kPixelSigma, random));
       }
@@ -73,7 +73,7 @@ bool is_near(const Pose2& a, const Pose2& b) {
 }
 
 Relocalizer relocalizer_for(const SweepMaker& maker) {
-  return Relocalizer(maker.map, maker.plan, maker.geometry, {});
+  return Relocalizer(maker.map, maker.plan, {head_rig(maker.geometry), {}}, {});
 }
 
 /// How often the relocalizer was right, wrong though sure, or unsure, over random poses from which

@@ -50,32 +50,30 @@ inline LookBias draw_bias(RandomStream& random, const SensorNoise& noise) {
 }
 
 /// What a head that believes to aim at the landmark reports, with the true angles off by the bias.
-inline SensorSnapshot aimed_sensor(const Landmark& landmark, const HeadGeometry& geometry,
-                                   const Pose2& pose, const LookBias& bias, LookId look,
-                                   Stamp stamp, double radius_px = 24.0) {
+inline Shot aimed_shot(const Landmark& landmark, const HeadGeometry& geometry, const Pose2& pose,
+                       const LookBias& bias, LookId look, Stamp stamp, double radius_px = 24.0) {
   const Eigen::Vector3d p_r = to_isometry(pose).inverse() * landmark.centre_w();
   const HeadAngles aim = aim_at(geometry, p_r);
-  SensorSnapshot sensor;
-  sensor.stamp = stamp;
-  sensor.look = look;
-  sensor.head = {aim.pan - bias.pan, aim.tilt - bias.tilt};
+  Shot shot;
+  shot.stamp = stamp;
+  shot.look = look;
+  shot.head = {aim.pan - bias.pan, aim.tilt - bias.tilt};
   const double range = (p_r - geometry.mount_r).norm();
   const ZoomCalibration zoom = zoom_calibration();
-  sensor.intrinsics = zoomed(zoom, range, *disc_radius(landmark), radius_px);
-  sensor.zoom_mm = zoom.zoom_for_focal(sensor.intrinsics.px);
-  return sensor;
+  shot.model = zoomed(zoom, range, *disc_radius(landmark), radius_px);
+  shot.zoom_mm = zoom.zoom_for_focal(pinhole(shot).px);
+  return shot;
 }
 
 /// The disc as the camera saw it: the true head is at reading + bias + white part, and the ellipse
 /// is measured with @p pixel_sigma on the centre and on both axes.
-inline EllipseObservation observe(const Landmark& landmark, SensorSnapshot sensor,
-                                  const HeadGeometry& geometry, const Pose2& truth,
-                                  const LookBias& bias, double reading_angle, double pixel_sigma,
-                                  RandomStream& random) {
-  HeadAngles head{sensor.head.pan + bias.pan, sensor.head.tilt + bias.tilt};
+inline EllipseObservation observe(const Landmark& landmark, Shot shot, const HeadGeometry& geometry,
+                                  const Pose2& truth, const LookBias& bias, double reading_angle,
+                                  double pixel_sigma, RandomStream& random) {
+  HeadAngles head{shot.head.pan + bias.pan, shot.head.tilt + bias.tilt};
   head.pan += reading_angle * random.normal();
   head.tilt += reading_angle * random.normal();
-  Intrinsics intrinsics = sensor.intrinsics;
+  Intrinsics intrinsics = pinhole(shot);
   intrinsics.px *= std::exp(bias.log_focal);
   intrinsics.py *= std::exp(bias.log_focal);
   EllipseObservation observation;
@@ -86,7 +84,7 @@ inline EllipseObservation observe(const Landmark& landmark, SensorSnapshot senso
   observation.ellipse.a += pixel_sigma * random.normal();
   observation.ellipse.b += pixel_sigma * random.normal();
   observation.covariance *= pixel_sigma * pixel_sigma;
-  observation.sensor = sensor;
+  observation.shot = shot;
   observation.expected = landmark.id;
   return observation;
 }

@@ -29,7 +29,7 @@ class Updates : public Listener {
     for (const LocalizerTick& localizer : tick.localizers) {
       if (!localizer.update) continue;
       ++count;
-      if (tick.observation == nullptr || sensor_of(*tick.observation).look != tick.look) ++untold;
+      if (tick.observation == nullptr || shot_of(*tick.observation).look != tick.look) ++untold;
     }
   }
   void on_event(const Event& event) override { dropped += event.kind == "dropped" ? 1 : 0; }

@@ -15,9 +15,9 @@ class RealisticStory : public Listener {
   void on_tick(const Tick& tick) override {
     if (tick.observation == nullptr) return;
     ++observations;
-    late_by = tick.now - sensor_of(*tick.observation).stamp;
-    if (tick.truth_at_exposure.stamp != sensor_of(*tick.observation).stamp) ++mismatched;
-    if (sensor_of(*tick.observation).look != tick.look) ++of_another_look;
+    late_by = tick.now - shot_of(*tick.observation).stamp;
+    if (tick.truth_at_exposure.stamp != shot_of(*tick.observation).stamp) ++mismatched;
+    if (shot_of(*tick.observation).look != tick.look) ++of_another_look;
   }
   std::map<std::string, int> count;
   int observations = 0;

@@ -1,22 +1,15 @@
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <variant>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include "vigia/core/camera.hpp"
-#include "vigia/core/head.hpp"
 #include "vigia/core/landmark.hpp"
-#include "vigia/core/stamp.hpp"
+#include "vigia/core/shot.hpp"
 
 namespace vigia {
-
-/// Numbers the acquisitions of a mission: a look is one acquisition of one landmark, from the gaze
-/// order until it is released. 0 means no look.
-using LookId = std::int64_t;
 
 /// An ellipse in pixels. psi is the angle of the semi-axis a ≥ b from the u axis towards v, in
 /// (-π/2, π/2].
@@ -28,19 +21,9 @@ struct Ellipse {
   double psi = 0.0;
 };
 
-/// What the robot's own sensors said when an image was exposed. Everything here is a reading, not
-/// the truth.
-struct SensorSnapshot {
-  Stamp stamp;            ///< middle of the exposure
-  Intrinsics intrinsics;  ///< calibrated, at the zoom's reading
-  HeadAngles head;        ///< encoder readings
-  double zoom_mm = 8.0;   ///< zoom motor's reading
-  LookId look = 0;        ///< the acquisition that this image belongs to
-};
-
 /// The image of one disc.
 struct EllipseObservation {
-  SensorSnapshot sensor;
+  Shot shot;
   /// The landmark that was asked for. Discs look all alike, so this is an expectation, not an
   /// identity: the localizer associates.
   std::optional<LandmarkId> expected;
@@ -60,7 +43,7 @@ struct LabelledPoint {
 /// PatternDot, uv the centre of the dot's ellipse), the corners of a tag (0 lower left, 1 lower
 /// right, 2 upper right, 3 upper left, as the tag's reader sees them).
 struct PointsObservation {
-  SensorSnapshot sensor;
+  Shot shot;
   std::optional<LandmarkId> expected;  ///< asked for
   LandmarkId landmark = 0;             ///< read from the image, and of the map
   std::vector<LabelledPoint> points;
@@ -80,7 +63,7 @@ struct ImageExtent {
 /// the whole by @p landmark, where it is known.
 ImageExtent image_extent(const Observation& observation, const Landmark* landmark = nullptr);
 
-/// The snapshot that came with an observation.
-const SensorSnapshot& sensor_of(const Observation& observation);
+/// The shot that shows it.
+const Shot& shot_of(const Observation& observation);
 
 }  // namespace vigia

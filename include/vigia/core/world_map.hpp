@@ -4,14 +4,16 @@
 
 #include "vigia/core/config.hpp"
 #include "vigia/core/floor_plan.hpp"
+#include "vigia/core/ground.hpp"
 #include "vigia/core/landmark.hpp"
 
 namespace vigia {
 
-/// What the robot knows of the building: plan and landmarks.
+/// What the robot knows of the building: plan, ground and landmarks.
 struct WorldMap {
   std::string name;
   FloorPlan plan;
+  Ground ground;
   LandmarkMap landmarks;
 };
 

@@ -4,11 +4,11 @@
 
 #include <Eigen/Core>
 
-#include "vigia/core/head.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/core/observation.hpp"
 #include "vigia/core/odometry.hpp"
 #include "vigia/core/pose.hpp"
+#include "vigia/core/rig.hpp"
 #include "vigia/core/sensor_noise.hpp"
 #include "vigia/localization/disc_model.hpp"
 #include "vigia/localization/points_model.hpp"
@@ -22,7 +22,7 @@ namespace vigia::evaluation {
 class PosteriorBound {
  public:
   /// @p prior: covariance of (x, y, θ) at the start. @p noise: of the head's and zoom's readings.
-  PosteriorBound(const Eigen::Matrix3d& prior, const HeadGeometry& geometry,
+  PosteriorBound(const Eigen::Matrix3d& prior, const RigOnGround& on_ground,
                  const SensorNoise& noise);
 
   /// Moves from the true pose @p truth by the true @p increment, whose odometry has the covariance
@@ -34,12 +34,12 @@ class PosteriorBound {
   /// readings, @p bias the true errors of the look's readings, @p R the covariance of (u, v, s)
   /// in the image (the white part of the readings is added here). False, and nothing changed, when
   /// the disc has no image from there.
-  bool update(const Pose2& truth, const Landmark& landmark, const SensorSnapshot& sensor,
+  bool update(const Pose2& truth, const Landmark& landmark, const Shot& shot,
               const localization::LookBias& bias, const Eigen::Matrix3d& R);
 
   /// Takes in one image of a pattern or tag, of which @p points were seen (their covariances count,
   /// not their pixels).
-  bool update(const Pose2& truth, const Landmark& landmark, const SensorSnapshot& sensor,
+  bool update(const Pose2& truth, const Landmark& landmark, const Shot& shot,
               const localization::LookBias& bias,
               const std::vector<localization::SeenPoint>& points);
 
@@ -49,7 +49,7 @@ class PosteriorBound {
  private:
   void begin_look(LookId look);
 
-  HeadGeometry geometry_;
+  RigOnGround on_ground_;
   SensorNoise noise_;
   LookId look_ = 0;
   Eigen::Matrix<double, 6, 6> P_ = Eigen::Matrix<double, 6, 6>::Zero();

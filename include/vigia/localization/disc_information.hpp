@@ -5,6 +5,7 @@
 #include "vigia/core/camera.hpp"
 #include "vigia/core/head.hpp"
 #include "vigia/core/information.hpp"
+#include "vigia/core/rig.hpp"
 #include "vigia/core/sensor_noise.hpp"
 
 namespace vigia::localization {
@@ -22,9 +23,12 @@ struct DiscInformationParams {
 /// by the border.
 class DiscInformation final : public InformationModel {
  public:
-  DiscInformation(const HeadGeometry& geometry, ZoomCalibration zoom,
-                  const DiscInformationParams& params)
-      : geometry_(geometry), zoom_(std::move(zoom)), params_(params) {}
+  DiscInformation(const HeadGeometry& geometry, const ZoomCalibration& zoom,
+                  const DiscInformationParams& params, const Ground& ground = {})
+      : geometry_(geometry),
+        zoom_(zoom),
+        on_ground_{head_rig(geometry, zoom), ground},
+        params_(params) {}
 
   std::optional<Eigen::Matrix3d> look_information(const Landmark& landmark,
                                                   const Pose2& pose) const override;
@@ -32,6 +36,7 @@ class DiscInformation final : public InformationModel {
  private:
   HeadGeometry geometry_;
   ZoomCalibration zoom_;
+  RigOnGround on_ground_;
   DiscInformationParams params_;
 };
 

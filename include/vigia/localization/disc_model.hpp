@@ -5,10 +5,10 @@
 #include <Eigen/Core>
 
 #include "vigia/core/camera.hpp"
-#include "vigia/core/head.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/core/observation.hpp"
 #include "vigia/core/pose.hpp"
+#include "vigia/core/rig.hpp"
 
 namespace vigia::localization {
 
@@ -40,8 +40,8 @@ struct DiscMeasurement {
 };
 
 /// Predicts (u, v, ln √(ab)) with analytic Jacobians. Nothing where disc_image() has nothing.
-std::optional<DiscMeasurement> predict_disc(const Landmark& landmark, const SensorSnapshot& sensor,
-                                            const HeadGeometry& geometry, const Pose2& pose,
+std::optional<DiscMeasurement> predict_disc(const Landmark& landmark, const Shot& shot,
+                                            const RigOnGround& on_ground, const Pose2& pose,
                                             const LookBias& bias);
 
 /// The observed (u, v, ln √(ab)) and its covariance, from an ellipse and its 5×5 covariance.

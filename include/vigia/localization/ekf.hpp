@@ -66,7 +66,7 @@ struct EkfParams {
 class EkfLocalizer final : public Localizer {
  public:
   /// @p plan, when given, rules out landmarks behind walls.
-  EkfLocalizer(LandmarkMap map, const HeadGeometry& geometry, const EkfParams& params,
+  EkfLocalizer(LandmarkMap map, const RigOnGround& on_ground, const EkfParams& params,
                std::optional<FloorPlan> plan = std::nullopt);
 
   std::string_view name() const override { return "ekf"; }
@@ -110,7 +110,7 @@ class EkfLocalizer final : public Localizer {
   Match match(const PointsObservation& observation, const EkfState& at) const;
   void append(const EkfInput& input, bool extrapolated = false);
   void move_by(const Motion& motion, Event& event) const;
-  void fuse(const SensorSnapshot& sensor, Event& event) const;
+  void fuse(const Shot& shot, Event& event) const;
   std::vector<const EkfInput*> inputs_of_look(const Event& event) const;
   std::vector<Vector6> guess_of_look(const Event& event) const;
   EkfState with_look(const EkfState& state, LookId look) const;
@@ -124,7 +124,7 @@ class EkfLocalizer final : public Localizer {
   Eigen::Matrix3d measurement_covariance(const EllipseObservation& observation) const;
 
   LandmarkMap map_;
-  HeadGeometry geometry_;
+  RigOnGround on_ground_;
   EkfParams params_;
   std::optional<FloorPlan> plan_;
   double gate_;

@@ -7,10 +7,10 @@
 #include <Eigen/Core>
 
 #include "vigia/core/belief.hpp"
-#include "vigia/core/head.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/core/observation.hpp"
 #include "vigia/core/odometry.hpp"
+#include "vigia/core/rig.hpp"
 #include "vigia/core/sensor_noise.hpp"
 #include "vigia/localization/disc_model.hpp"
 #include "vigia/localization/points_model.hpp"
@@ -37,7 +37,7 @@ struct EkfState {
 
 /// An image of a disc whose landmark is known.
 struct DiscFix {
-  SensorSnapshot sensor;
+  Shot shot;
   Landmark landmark;
   Eigen::Vector3d z;  ///< as measured_disc()
   Eigen::Matrix3d R;  ///< of z in the image; the white part of the readings comes on top
@@ -45,7 +45,7 @@ struct DiscFix {
 
 /// An image of a landmark that says who it is: a pattern's dots or a tag's corners.
 struct PointsFix {
-  SensorSnapshot sensor;
+  Shot shot;
   Landmark landmark;
   std::vector<SeenPoint> points;
 };
@@ -59,8 +59,8 @@ struct Motion {
 /// What moves the filter on.
 using EkfInput = std::variant<Motion, DiscFix, PointsFix>;
 
-/// The snapshot of an image; nullptr for an increment.
-const SensorSnapshot* sensor_of(const EkfInput& input);
+/// The shot of an image; nullptr for an increment.
+const Shot* shot_of(const EkfInput& input);
 
 /// The state at the start, with the biases of no look yet.
 EkfState initial_state(Stamp stamp, const Prior& prior, const SensorNoise& noise);

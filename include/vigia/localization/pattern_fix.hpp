@@ -29,7 +29,7 @@ struct PatternFixParams {
 /// tags.
 class PatternFixLocalizer final : public Localizer {
  public:
-  PatternFixLocalizer(LandmarkMap map, const HeadGeometry& geometry,
+  PatternFixLocalizer(LandmarkMap map, const RigOnGround& on_ground,
                       const PatternFixParams& params);
 
   std::string_view name() const override { return "pattern_fix"; }
@@ -45,11 +45,11 @@ class PatternFixLocalizer final : public Localizer {
  private:
   UpdateResult take_in(const PointsObservation& observation);
   const FittedPose* upright(const PointsPose& solved, const Landmark& landmark,
-                            const SensorSnapshot& sensor) const;
+                            const Shot& shot) const;
   void believe(const SpatialPose& pose, Stamp stamp);
 
   LandmarkMap map_;
-  HeadGeometry geometry_;
+  RigOnGround on_ground_;
   PatternFixParams params_;
   Belief belief_;
   Stamp start_;

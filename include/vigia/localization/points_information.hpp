@@ -5,6 +5,7 @@
 #include "vigia/core/camera.hpp"
 #include "vigia/core/head.hpp"
 #include "vigia/core/information.hpp"
+#include "vigia/core/rig.hpp"
 #include "vigia/core/sensor_noise.hpp"
 #include "vigia/localization/disc_information.hpp"
 
@@ -25,9 +26,12 @@ struct PointsInformationParams {
 /// outside the image.
 class PointsInformation final : public InformationModel {
  public:
-  PointsInformation(const HeadGeometry& geometry, ZoomCalibration zoom,
-                    const PointsInformationParams& params)
-      : geometry_(geometry), zoom_(std::move(zoom)), params_(params) {}
+  PointsInformation(const HeadGeometry& geometry, const ZoomCalibration& zoom,
+                    const PointsInformationParams& params, const Ground& ground = {})
+      : geometry_(geometry),
+        zoom_(zoom),
+        on_ground_{head_rig(geometry, zoom), ground},
+        params_(params) {}
 
   std::optional<Eigen::Matrix3d> look_information(const Landmark& landmark,
                                                   const Pose2& pose) const override;
@@ -35,6 +39,7 @@ class PointsInformation final : public InformationModel {
  private:
   HeadGeometry geometry_;
   ZoomCalibration zoom_;
+  RigOnGround on_ground_;
   PointsInformationParams params_;
 };
 

@@ -7,10 +7,10 @@
 #include <Eigen/Geometry>
 
 #include "vigia/core/camera.hpp"
-#include "vigia/core/head.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/core/observation.hpp"
 #include "vigia/core/pose.hpp"
+#include "vigia/core/rig.hpp"
 #include "vigia/localization/disc_model.hpp"
 
 namespace vigia::localization {
@@ -86,9 +86,8 @@ struct PointsMeasurement {
 
 /// Compresses the points of a landmark at wMl. Nothing when one of them has no image from there.
 std::optional<PointsMeasurement> measure_points(const std::vector<SeenPoint>& points,
-                                                const Eigen::Isometry3d& wMl,
-                                                const SensorSnapshot& sensor,
-                                                const HeadGeometry& geometry, const Pose2& pose,
+                                                const Eigen::Isometry3d& wMl, const Shot& shot,
+                                                const RigOnGround& on_ground, const Pose2& pose,
                                                 const LookBias& bias);
 
 }  // namespace vigia::localization

@@ -6,9 +6,9 @@
 
 #include "vigia/core/belief.hpp"
 #include "vigia/core/floor_plan.hpp"
-#include "vigia/core/head.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/core/observation.hpp"
+#include "vigia/core/rig.hpp"
 #include "vigia/core/sensor_noise.hpp"
 
 namespace vigia::localization {
@@ -42,7 +42,7 @@ struct Sweep {
   /// The discs, at most a few per landmark. The biases of readings are drawn anew for each look.
   std::vector<EllipseObservation> sightings;
   /// Every direction that was searched, with a find or without one.
-  std::vector<SensorSnapshot> views;
+  std::vector<Shot> views;
 };
 
 enum class RelocalizationStatus {
@@ -63,7 +63,7 @@ struct Relocalization {
 /// landmarks, and discs have a front.
 class Relocalizer {
  public:
-  Relocalizer(LandmarkMap map, FloorPlan plan, const HeadGeometry& geometry,
+  Relocalizer(LandmarkMap map, FloorPlan plan, const RigOnGround& on_ground,
               const RelocalizerParams& params);
 
   /// With a @p prior one sighting is enough, and poses it holds unlikely weigh less; without, at
@@ -98,13 +98,12 @@ class Relocalizer {
   static std::set<LandmarkId> landmarks_of(const std::vector<Match>& matches);
   bool plausible(const Match& match, const Pose2& pose) const;
   int missed(const Hypothesis& hypothesis, const Sweep& sweep) const;
-  bool should_be_seen(const Landmark& landmark, const Pose2& pose,
-                      const SensorSnapshot& view) const;
+  bool should_be_seen(const Landmark& landmark, const Pose2& pose, const Shot& view) const;
   Eigen::Matrix3d pixel_covariance(const EllipseObservation& sighting) const;
 
   LandmarkMap map_;
   FloorPlan plan_;
-  HeadGeometry geometry_;
+  RigOnGround on_ground_;
   RelocalizerParams params_;
   double gate_;
 };

@@ -3,10 +3,10 @@
 #include <Eigen/Core>
 
 #include "vigia/core/belief.hpp"
-#include "vigia/core/head.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/core/observation.hpp"
 #include "vigia/core/odometry.hpp"
+#include "vigia/core/rig.hpp"
 #include "vigia/core/sensor_noise.hpp"
 #include "vigia/localization/points_pose.hpp"
 
@@ -15,9 +15,8 @@ namespace vigia::localization {
 /// The robot from one landmark: wMr = wMl · cMl⁻¹ · rMc⁻¹ at the head's readings. The covariance
 /// holds the fit's own and, to first order, the errors of the readings (constant and white part)
 /// and of the focal length; they make it larger in one image and are common to all of a look.
-SpatialPose robot_in_space(const Landmark& landmark, const FittedPose& fit,
-                           const SensorSnapshot& sensor, const HeadGeometry& geometry,
-                           const SensorNoise& noise);
+SpatialPose robot_in_space(const Landmark& landmark, const FittedPose& fit, const Shot& shot,
+                           const RigOnGround& on_ground, const SensorNoise& noise);
 
 /// Height and attitude of the floor under the robot, as a pose in space shows them.
 struct FloorAttitude {

@@ -82,6 +82,9 @@ struct MissionSetup {
 
   Path path;                  ///< planned, the same for every seed
   std::string resolved_yaml;  ///< the whole mission with every default written out
+
+  /// What places the robot's cameras in the world, as the robot knows it.
+  RigOnGround on_ground() const { return {robot.rig(), world.ground}; }
 };
 
 /// Reads and validates a mission file with command-line overrides ("key.path=value"), and plans its

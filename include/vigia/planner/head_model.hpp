@@ -2,6 +2,7 @@
 
 #include "vigia/core/actuation.hpp"
 #include "vigia/core/camera.hpp"
+#include "vigia/core/ground.hpp"
 #include "vigia/core/head.hpp"
 
 namespace vigia::planner {
@@ -14,6 +15,7 @@ struct HeadModel {
   double radius_px = 24.0;  ///< apparent radius of a disc for which a zoom is set
   double dwell_s = 1.0;     ///< how long a landmark is watched
   double fill = 0.8;        ///< half the image's height that a pattern or tag is to fill
+  Ground ground = {};
 };
 
 }  // namespace vigia::planner

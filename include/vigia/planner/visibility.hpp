@@ -4,6 +4,7 @@
 
 #include "vigia/core/actuation.hpp"
 #include "vigia/core/floor_plan.hpp"
+#include "vigia/core/ground.hpp"
 #include "vigia/core/head.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/core/pose.hpp"
@@ -21,7 +22,8 @@ enum class Sight { visible, too_near, too_far, too_oblique, out_of_reach, hidden
 /// Whether the head of a robot at a pose can see a landmark of the map.
 class Visibility {
  public:
-  Visibility(const FloorPlan& plan, HeadGeometry head, HeadLimits limits, VisibilityParams params);
+  Visibility(const FloorPlan& plan, HeadGeometry head, HeadLimits limits, VisibilityParams params,
+             const Ground& ground = {});
 
   Sight sight(const Landmark& landmark, const Pose2& pose) const;
   /// Distance from the head to the landmark, m.
@@ -34,6 +36,7 @@ class Visibility {
   HeadGeometry head_;
   HeadLimits limits_;
   VisibilityParams params_;
+  Ground ground_;
 };
 
 }  // namespace vigia::planner

@@ -6,6 +6,7 @@
 #include "vigia/core/actuation.hpp"
 #include "vigia/core/belief.hpp"
 #include "vigia/core/gaze.hpp"
+#include "vigia/core/ground.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/servo/pan_tilt_servo.hpp"
 #include "vigia/servo/zoom_control.hpp"
@@ -80,7 +81,8 @@ struct GazeOutput {
 /// dwell_s anew.
 class GazeController {
  public:
-  GazeController(HeadGeometry geometry, HeadLimits limits, ZoomCalibration zoom, GazeParams params);
+  GazeController(HeadGeometry geometry, HeadLimits limits, ZoomCalibration zoom, GazeParams params,
+                 const Ground& ground = {});
 
   /// Replaces the order in force; the state becomes slew. The released landmark is forgotten.
   void order(const GazeOrder& order);
@@ -135,6 +137,7 @@ class GazeController {
   HeadLimits limits_;
   ZoomCalibration zoom_;
   GazeParams params_;
+  Ground ground_;
   PanTiltServo servo_;
   ZoomControl zoom_control_;
   GazeState state_ = GazeState::idle;

@@ -5,6 +5,7 @@
 #include <visp3/robot/vpRobotSimulator.h>
 
 #include "vigia/core/actuation.hpp"
+#include "vigia/core/ground.hpp"
 #include "vigia/core/head.hpp"
 #include "vigia/core/odometry.hpp"
 #include "vigia/core/pose.hpp"
@@ -44,7 +45,8 @@ struct RobotTruth {
 class Robot : public vpRobotSimulator {
  public:
   /// Stands still at @p start, the head at rest at (0, 0) or the nearest angle in its range.
-  Robot(const RobotParams& params, const Pose2& start, double zoom_mm, std::uint64_t seed);
+  Robot(const RobotParams& params, const Pose2& start, double zoom_mm, std::uint64_t seed,
+        const Ground& ground = {});
   Robot(const Robot&) = delete;
   Robot& operator=(const Robot&) = delete;
   ~Robot() override = default;
@@ -115,6 +117,7 @@ class Robot : public vpRobotSimulator {
   Eigen::Isometry3d camera_at(const Pose2& pose, const HeadAngles& head) const;
 
   RobotParams params_;
+  Ground ground_;
   RobotTruth truth_;
   BaseRates base_command_;
   HeadRates head_command_;

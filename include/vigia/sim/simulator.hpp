@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "vigia/core/rig.hpp"
 #include "vigia/sim/camera_errors.hpp"
 #include "vigia/sim/disturbances.hpp"
 #include "vigia/sim/kidnapping.hpp"
@@ -22,6 +23,9 @@ struct RobotSetup {
   ImagingParams imaging;
   double initial_zoom_mm = 8.0;
   std::optional<RangeRingParams> range_ring;
+
+  /// The robot's cameras: one on the head, with the zoom, of id 0.
+  Rig rig() const;
 };
 
 /// Reads a robot file: keys `name`, `base`, `head`, `zoom`, `camera`, `odometry`, `sensor`,

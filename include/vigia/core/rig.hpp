@@ -1,0 +1,62 @@
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "vigia/core/camera_model.hpp"
+#include "vigia/core/ground.hpp"
+#include "vigia/core/head.hpp"
+#include "vigia/core/shot.hpp"
+
+namespace vigia {
+
+/// A camera that does not move on the base.
+struct FixedMount {
+  Eigen::Isometry3d rMc = Eigen::Isometry3d::Identity();
+};
+
+/// A motorised zoom, or optics that do not change.
+using Optics = std::variant<ZoomCalibration, CameraModel>;
+
+/// One camera of a robot, as the robot knows it.
+struct Camera {
+  CameraId id = 0;
+  std::variant<HeadGeometry, FixedMount> mount;  ///< turned by the head, or fixed
+  Optics optics = CameraModel{};
+  double period_s = 0.0;   ///< between two exposures; 0: one in every tick
+  double phase_s = 0.0;    ///< of the first exposure
+  double latency_s = 0.0;  ///< from the middle of the exposure to the delivery
+
+  /// Where it is in the base frame when the head stands at @p head.
+  Eigen::Isometry3d rMc(const HeadAngles& head) const;
+  /// Its model at a zoom position, which fixed optics do not have.
+  CameraModel model(double zoom_mm) const;
+};
+
+/// The cameras of a robot. At least one, with ids of their own.
+struct Rig {
+  std::vector<Camera> cameras{Camera{}};
+
+  /// The camera of that id, or nullptr.
+  const Camera* find(CameraId id) const;
+  /// The camera of that id, which the rig must have: std::out_of_range.
+  const Camera& at(CameraId id) const;
+};
+
+/// What places a robot's cameras in the world.
+struct RigOnGround {
+  Rig rig;
+  Ground ground;
+
+  /// wMc of a camera on a robot at @p pose whose head stands at @p head.
+  Eigen::Isometry3d wMc(CameraId camera, const HeadAngles& head, const Pose2& pose) const {
+    return ground.place(pose) * rig.at(camera).rMc(head);
+  }
+};
+
+/// The rig of one camera, of id 0, on a head.
+Rig head_rig(const HeadGeometry& geometry, Optics optics = CameraModel{});
+
+}  // namespace vigia

@@ -1,0 +1,55 @@
+#include "vigia/core/rig.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace vigia {
+namespace {
+
+Eigen::Isometry3d placed(const HeadGeometry& mount, const HeadAngles& head) {
+  return camera_in_base(mount, head);
+}
+
+Eigen::Isometry3d placed(const FixedMount& mount, const HeadAngles& /*head*/) {
+  return mount.rMc;
+}
+
+CameraModel focused(const ZoomCalibration& optics, double zoom_mm) {
+  return optics.at(zoom_mm);
+}
+
+CameraModel focused(const CameraModel& optics, double /*zoom_mm*/) {
+  return optics;
+}
+
+}  // namespace
+
+Eigen::Isometry3d Camera::rMc(const HeadAngles& head) const {
+  return std::visit([&](const auto& on) { return placed(on, head); }, mount);
+}
+
+CameraModel Camera::model(double zoom_mm) const {
+  return std::visit([&](const auto& by) { return focused(by, zoom_mm); }, optics);
+}
+
+const Camera* Rig::find(CameraId id) const {
+  const auto found = std::find_if(cameras.begin(), cameras.end(),
+                                  [id](const Camera& camera) { return camera.id == id; });
+  return found == cameras.end() ? nullptr : &*found;
+}
+
+const Camera& Rig::at(CameraId id) const {
+  if (const Camera* camera = find(id)) return *camera;
+  throw std::out_of_range("the rig has no camera " + std::to_string(id));
+}
+
+Rig head_rig(const HeadGeometry& geometry, Optics optics) {
+  Camera camera;
+  camera.mount = geometry;
+  camera.optics = std::move(optics);
+  return {{std::move(camera)}};
+}
+
+}  // namespace vigia
