@@ -18,37 +18,18 @@
 namespace vigia::tracking {
 namespace {
 
-struct Target {
-  int number;
-  std::unique_ptr<EllipseTracker> tracker;
-  Ellipse last;  ///< as it was last found
-  bool dark;
-  TargetMotion motion;
-};
-
-Eigen::Vector2d centre(const Ellipse& ellipse) {
+Eigen::Vector2d centre_of(const Ellipse& ellipse) {
   return {ellipse.u, ellipse.v};
 }
 
-double log_size_ratio(const Ellipse& a, const Ellipse& b) {
+double log_size_step(const Ellipse& a, const Ellipse& b) {
   return 0.5 * std::log(a.a * a.b / (b.a * b.b));
 }
 
 bool same_disc(const EllipseFeature& a, const EllipseFeature& b) {
   return a.status == FeatureStatus::found && b.status == FeatureStatus::found &&
-         (centre(a.ellipse) - centre(b.ellipse)).norm() < 0.5 * std::min(a.ellipse.b, b.ellipse.b);
-}
-
-// How far a disc lies from where the target is predicted; nothing when it can't be the target.
-std::optional<double> distance(const Target& target, const EllipseFeature& disc) {
-  constexpr double kScaleStep = 0.3;
-  constexpr double kScaleAging = 0.03;
-  const double size_step = kScaleStep + kScaleAging * target.motion.unseen();
-  const double away = (centre(disc.ellipse) - target.motion.predicted()).norm();
-  if ((disc.contrast > 0.0) != target.dark || away > target.motion.reach(target.last.a) ||
-      std::abs(log_size_ratio(disc.ellipse, target.last)) > size_step)
-    return std::nullopt;
-  return away;
+         (centre_of(a.ellipse) - centre_of(b.ellipse)).norm() <
+             0.5 * std::min(a.ellipse.b, b.ellipse.b);
 }
 
 }  // namespace
@@ -80,12 +61,21 @@ std::unique_ptr<EllipseTracker> make_picture_tracker(const PictureRunParams& par
 }
 
 class PictureRun::State {
+  struct Target {
+    int number;
+    std::unique_ptr<EllipseTracker> tracker;
+    Ellipse last;  ///< as it was last found
+    bool dark;
+    TargetMotion motion;
+  };
+
  public:
   explicit State(const PictureRunParams& params);
 
   std::vector<PictureRow> next(const imaging::Frame& picture);
 
  private:
+  static std::optional<double> distance(const Target& target, const EllipseFeature& disc);
   bool search_is_due() const;
   EllipseFeature within_limits(const EllipseFeature& feature) const;
   std::vector<EllipseFeature> search(imaging::Canvas& canvas);
@@ -133,6 +123,19 @@ std::vector<PictureRow> PictureRun::State::next(const imaging::Frame& picture) {
   if (is_another_scene(features, discs)) forget_lost(features);
   adopt(canvas, discs, features);
   return conclude(features);
+}
+
+// How far a disc lies from where the target is predicted; nothing when it can't be the target.
+std::optional<double> PictureRun::State::distance(const Target& target,
+                                                  const EllipseFeature& disc) {
+  constexpr double kScaleStep = 0.3;
+  constexpr double kScaleAging = 0.03;
+  const double size_step = kScaleStep + kScaleAging * target.motion.unseen();
+  const double away = (centre_of(disc.ellipse) - target.motion.predicted()).norm();
+  if ((disc.contrast > 0.0) != target.dark || away > target.motion.reach(target.last.a) ||
+      std::abs(log_size_step(disc.ellipse, target.last)) > size_step)
+    return std::nullopt;
+  return away;
 }
 
 bool PictureRun::State::search_is_due() const {
@@ -190,8 +193,8 @@ void PictureRun::State::track_unclaimed(imaging::Canvas& canvas,
 void PictureRun::State::give_up_doubles(std::vector<EllipseFeature>& features) const {
   // Of equal distances the first target's counts as the shorter.
   const auto nearer = [&](std::size_t i, std::size_t j) {
-    const double away_i = (centre(features[i].ellipse) - targets_[i].motion.predicted()).norm();
-    const double away_j = (centre(features[j].ellipse) - targets_[j].motion.predicted()).norm();
+    const double away_i = (centre_of(features[i].ellipse) - targets_[i].motion.predicted()).norm();
+    const double away_j = (centre_of(features[j].ellipse) - targets_[j].motion.predicted()).norm();
     return away_i < away_j || (away_i == away_j && i < j);
   };
   std::vector<bool> double_of_another(features.size(), false);
@@ -234,7 +237,7 @@ void PictureRun::State::adopt(imaging::Canvas& canvas, const std::vector<Ellipse
                                    [&](const auto& other) { return same_disc(disc, other); });
     if (known) continue;
     targets_.push_back({++numbers_, make_picture_tracker(params_), disc.ellipse,
-                        disc.contrast > 0.0, TargetMotion(centre(disc.ellipse))});
+                        disc.contrast > 0.0, TargetMotion(centre_of(disc.ellipse))});
     targets_.back().tracker->start(canvas, disc.ellipse);
     features.push_back(disc);
   }
@@ -249,7 +252,7 @@ std::vector<PictureRow> PictureRun::State::conclude(const std::vector<EllipseFea
     rows.push_back({target.number, features[i]});
     if (features[i].status == FeatureStatus::found) {
       target.last = features[i].ellipse;
-      target.motion.see(centre(target.last));
+      target.motion.see(centre_of(target.last));
       ++held_;
     }
     if (target.motion.unseen() <= params_.remember) kept.push_back(std::move(target));

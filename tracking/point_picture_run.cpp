@@ -17,14 +17,7 @@ namespace {
 
 constexpr int kTagCorners = 4;
 
-struct Target {
-  int number;
-  std::unique_ptr<PointTracker> tracker;
-  LandmarkCode code;
-  TargetMotion motion;
-};
-
-Eigen::Vector2d centre(const PointsFeature& feature) {
+Eigen::Vector2d mean_point(const PointsFeature& feature) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   for (const LabelledPoint& point : feature.points) sum += point.uv;
   return sum / static_cast<double>(feature.points.size());
@@ -37,7 +30,7 @@ bool is_found(const PointsFeature& feature) {
 bool same_landmark(const PointsFeature& a, const PointsFeature& b) {
   constexpr double kSame = 4.0;  // px
   return a.code && b.code && *a.code == *b.code && !a.points.empty() && !b.points.empty() &&
-         (centre(a) - centre(b)).norm() < kSame;
+         (mean_point(a) - mean_point(b)).norm() < kSame;
 }
 
 cv::Rect box_of(const PointsFeature& feature) {
@@ -67,6 +60,13 @@ void draw_points(const PointsFeature& feature, const OverlayPen& pen) {
 }  // namespace
 
 class PointPictureRun::State {
+  struct Target {
+    int number;
+    std::unique_ptr<PointTracker> tracker;
+    LandmarkCode code;
+    TargetMotion motion;
+  };
+
  public:
   explicit State(const PointPictureRunParams& params);
 
@@ -149,7 +149,7 @@ std::vector<PointsFeature> PointPictureRun::State::claim(const imaging::Frame& p
                                                          std::vector<PointsFeature>& seen) {
   const auto away = [&](std::size_t i, std::size_t j) -> std::optional<double> {
     if (!is_found(seen[j]) || !(*seen[j].code == targets_[i].code)) return std::nullopt;
-    return (centre(seen[j]) - targets_[i].motion.predicted()).norm();
+    return (mean_point(seen[j]) - targets_[i].motion.predicted()).norm();
   };
   const auto seen_of = assign_nearest(targets_.size(), seen.size(), away);
   std::vector<PointsFeature> features(targets_.size());
@@ -202,7 +202,7 @@ void PointPictureRun::State::adopt(const imaging::Frame& picture,
     });
     if (!is_found(feature) || known) continue;
     targets_.push_back({number_for(*feature.code), make_point_tracker(params_.tracker, {}),
-                        *feature.code, TargetMotion(centre(feature))});
+                        *feature.code, TargetMotion(mean_point(feature))});
     targets_.back().tracker->start(picture, feature);
     features.push_back(feature);
   }
@@ -219,7 +219,7 @@ std::vector<PointPictureRow> PointPictureRun::State::conclude(
     if (!feature.code) feature.code = target.code;
     rows.push_back({target.number, feature});
     if (is_found(feature)) {
-      target.motion.see(centre(feature));
+      target.motion.see(mean_point(feature));
       ++held_;
     }
     if (target.motion.unseen() <= params_.remember) kept.push_back(std::move(target));
