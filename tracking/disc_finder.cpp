@@ -158,7 +158,7 @@ void DiscFinder::find_in_half_size(const vpImage<unsigned char>& image,
     smooth(half, whole, again, soft);
     half = soft;
   }
-  find_blobs({half, image, negative, 2.0 * again + 1.0, 2}, window, min_axis_ratio, out);
+  find_blobs({half, image, negative, std::max(2.0 * again, 1.0), 2}, window, min_axis_ratio, out);
 }
 
 void DiscFinder::find_blobs(const Pictures& pictures, const imaging::Window& window,

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,7 +28,7 @@ struct TrackOptions {
   std::vector<std::string> inputs;
   std::string polarity = "either";
   std::string radius_px;
-  std::vector<std::string> ids;
+  std::string ids;
   double min_score = 0.0;
   int every = 1;
   int expected = 0;
@@ -105,7 +106,8 @@ std::vector<tracking::LandmarkCode> parse_codes(const TrackOptions& options) {
     throw InputError("--ids: discs have no codes; --tracker pattern and tag have");
   const bool tag = options.tracker == "tag";
   std::vector<tracking::LandmarkCode> codes;
-  for (const std::string& id : options.ids) {
+  std::istringstream list(options.ids);
+  for (std::string id; std::getline(list, id, ',');) {
     const auto code = parse_code(id, tag);
     if (!code)
       throw InputError(fmt::format("--ids: found '{}', must be {}", id,
@@ -209,8 +211,7 @@ void add_what(CLI::App& command, TrackOptions& options) {
       ->capture_default_str();
   command.add_option("--radius-px", options.radius_px,
                      "MIN:MAX, smallest and largest semi-axis of discs, px");
-  command.add_option("--ids", options.ids, "Tags (7) or patterns (2-13-4) that count")
-      ->delimiter(',');
+  command.add_option("--ids", options.ids, "Tags (3,7) or patterns (2-13-4,2-13-5) that count");
   command
       .add_option("--min-score", options.min_score,
                   "Discs with less of a score, landmarks with less of a confidence do not count")
