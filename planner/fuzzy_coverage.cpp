@@ -8,8 +8,8 @@ namespace vigia::planner {
 namespace {
 
 /// The least degree that counts as covered; fuzzylite drops what is below 1e-6.
-constexpr double kLeast = 1e-3;
-constexpr std::size_t kMostWork = 5000000;
+constexpr double kMinFired = 1e-3;
+constexpr std::size_t kMaxWork = 5000000;
 
 double degree(const FllTerm& term, double x) {
   const auto& p = term.parameters;
@@ -56,7 +56,7 @@ double fired(const FllSystem& system, const FllRule& rule, const std::vector<dou
 
 bool covered(const FllSystem& system, const std::vector<double>& x) {
   return std::any_of(system.rules.begin(), system.rules.end(),
-                     [&](const FllRule& rule) { return fired(system, rule, x) >= kLeast; });
+                     [&](const FllRule& rule) { return fired(system, rule, x) >= kMinFired; });
 }
 
 [[noreturn]] void report(const FllSystem& system, const std::vector<double>& x) {
@@ -76,7 +76,7 @@ void check_output(const FllSystem& system) {
     double highest = 0.0;
     for (int i = 0; i < system.resolution; ++i)
       highest = std::max(highest, degree(term, output.low + (i + 0.5) * step));
-    if (highest < kLeast)
+    if (highest < kMinFired)
       throw InputError(rule.where, "the term '" + term.name + "' of " + output.name +
                                        " has no area within the range, or too little for the "
                                        "defuzzifier's resolution");
@@ -92,7 +92,7 @@ void check_coverage(const FllSystem& system) {
   for (const FllVariable& input : system.inputs) {
     axes.push_back(samples(input));
     combinations *= axes.back().size();
-    if (combinations * system.rules.size() > kMostWork)
+    if (combinations * system.rules.size() > kMaxWork)
       throw InputError(
           system.rules.front().where,
           "the system has too many inputs and terms to check that its rules cover all");

@@ -45,7 +45,7 @@ class FuzzyPolicy final : public LookPolicy {
     const auto preselected = best_preselected(context);
     const auto visible = best_visible(context);
     if (preselected &&
-        (!visible || preselected->value >= parts_.perception.least_value * visible->value))
+        (!visible || preselected->value >= parts_.perception.min_value * visible->value))
       return choice(*preselected, "preselected for the control area, at its zoom");
     if (!visible) return std::nullopt;
     return choice(*visible, preselected

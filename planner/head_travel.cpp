@@ -45,14 +45,14 @@ Pose2 moved_along(const LookContext& context, double advance_m) {
 }  // namespace
 
 bool can_be_held(const Landmark& landmark, const Arrival& arrival, const LookContext& context) {
-  if (!can_be_watched(landmark, context, arrival.pose)) return false;
+  if (!can_be_observed(landmark, context, arrival.pose)) return false;
   const double advance =
       arrival.station_m - context.station_m + context.speed_mps * context.head_model.dwell_s;
   const Pose2 end = advance > 0.0 ? moved_along(context, advance) : arrival.pose;
   const auto from = free_pan(landmark, arrival.pose, context.head_model);
   const auto to = free_pan(landmark, end, context.head_model);
   // From one side of the stop to the other is nearly a whole turn.
-  return from && to && std::abs(*to - *from) < kPi && can_be_watched(landmark, context, end);
+  return from && to && std::abs(*to - *from) < kPi && can_be_observed(landmark, context, end);
 }
 
 double travel_time(const HeadReading& from, const HeadAngles& aim, double zoom_mm,

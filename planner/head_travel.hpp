@@ -21,8 +21,8 @@ double travel_time(const HeadReading& from, const HeadAngles& aim, double zoom_m
 Arrival foresee(const Landmark& landmark, std::optional<double> zoom_mm,
                 const LookContext& context);
 
-/// Whether the landmark can be watched from the arrival until the look's end: not excluded, visible
-/// at both, and the pan keeps off its stops meanwhile.
+/// Whether the landmark can be observed from the arrival until the look's end: not excluded,
+/// visible at both, and the pan keeps off its stops meanwhile.
 bool can_be_held(const Landmark& landmark, const Arrival& arrival, const LookContext& context);
 
 }  // namespace vigia::planner

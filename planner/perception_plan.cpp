@@ -46,8 +46,8 @@ class Study {
       if (visibility_.sight(landmark, position.pose) != Sight::visible) continue;
       study.nearest_m = std::min(study.nearest_m, distance);
       study.farthest_m = std::max(study.farthest_m, distance);
-      study.most_oblique =
-          std::max(study.most_oblique, visibility_.view_angle(landmark, position.pose));
+      study.max_view_angle =
+          std::max(study.max_view_angle, visibility_.view_angle(landmark, position.pose));
       const auto degrees = supervisors_.zoom_membership(distance);
       for (std::size_t g = 0; g < degrees.size(); ++g) membership[g] += degrees[g];
     }
@@ -104,10 +104,10 @@ bool within_margin(const Landmark& landmark, const LandmarkStudy& study, const Z
   if (study.farthest_m <= 0.0) return false;
   const double focal = head.zoom.at(zoom_mm).px;
   const double largest = focal * of.radius_m / study.nearest_m;
-  if (const auto feature = feature_width(landmark, study.farthest_m, study.most_oblique, focal))
-    return *feature >= params.least_feature_px && largest <= wanted_radius(landmark, head);
-  return focal * of.radius_m / study.farthest_m >= params.least_radius_px &&
-         largest <= params.most_radius_px;
+  if (const auto feature = feature_width(landmark, study.farthest_m, study.max_view_angle, focal))
+    return *feature >= params.min_feature_px && largest <= wanted_radius(landmark, head);
+  return focal * of.radius_m / study.farthest_m >= params.min_radius_px &&
+         largest <= params.max_radius_px;
 }
 
 void preselect(AreaPlan& plan, const LandmarkMap& landmarks, const ZoomClasses& classes,

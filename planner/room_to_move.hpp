@@ -14,7 +14,7 @@ namespace vigia::planner {
 double segment_distance(const Eigen::Vector2d& a0, const Eigen::Vector2d& a1,
                         const Eigen::Vector2d& b0, const Eigen::Vector2d& b1);
 
-/// Where a disc of a radius fits, exactly: no sampling along the way. The plan must outlive it.
+/// Where a disc of a radius fits, exactly: no sampling along a motion. The plan must outlive it.
 class RoomToMove {
  public:
   RoomToMove(const FloorPlan& plan, double radius_m, const std::vector<RoundObstacle>& others = {})

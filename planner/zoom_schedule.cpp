@@ -5,7 +5,7 @@
 namespace vigia::planner {
 namespace {
 
-/// The best way to reach an option.
+/// The best sequence that reaches an option.
 struct Reached {
   int changes = 0;
   double value = 0.0;
@@ -25,8 +25,9 @@ std::vector<Reached> reach(const std::vector<ZoomOption>& options,
     for (std::size_t j = 0; j < before.size(); ++j) {
       const int change = option.group != before[j].group ? 1 : 0;
       const double travel = cost_per_mm * std::abs(option.zoom_mm - before[j].zoom_mm);
-      const Reached way{reached[j].changes + change, reached[j].value + option.value - travel, j};
-      if (j == 0 || better(way, best)) best = way;
+      const Reached candidate{reached[j].changes + change, reached[j].value + option.value - travel,
+                              j};
+      if (j == 0 || better(candidate, best)) best = candidate;
     }
     result.push_back(best);
   }

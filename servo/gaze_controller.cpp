@@ -86,7 +86,7 @@ GazeOutput GazeController::step(const GazeInput& input) {
   if (!state_since_) state_since_ = input.now;
 
   const bool asked = state_ != GazeState::slew;
-  if (asked && input.sighting) return watch(input, *landmark);
+  if (asked && input.sighting) return track(input, *landmark);
 
   const Aim aim = aim_for(input, *landmark);
   if (state_ == GazeState::track) return miss(input, aim);
@@ -138,9 +138,8 @@ double GazeController::arrival_time(const GazeInput& input, const HeadAngles& ai
 
 double GazeController::held_radius(double radius_px, const Intrinsics& intrinsics) const {
   if (!active().zoom_mm) return active().radius_px;
-  return std::clamp(
-      radius_px, params_.planned_least_px,
-      std::max(params_.planned_most * half_image(intrinsics), params_.planned_least_px));
+  return std::clamp(radius_px, params_.planned_min_px,
+                    std::max(params_.planned_max * half_image(intrinsics), params_.planned_min_px));
 }
 
 GazeOutput GazeController::rest(const GazeInput& input) const {
@@ -169,8 +168,7 @@ double GazeController::wanted_focal(const GazeInput& input, const Landmark& land
   const double lever = across.dot(Eigen::Vector2d(-p_r.y(), p_r.x()));
   const Eigen::RowVector3d bearing(-across_w.x(), -across_w.y(), -lever);
   const double variance = (bearing * input.belief.covariance * bearing.transpose()).value();
-  const double sigma =
-      std::hypot(std::sqrt(std::max(variance, 0.0)), from_deg(params_.look_angle_deg));
+  const double sigma = std::hypot(std::sqrt(std::max(variance, 0.0)), params_.look_angle);
 
   const double planned = active().zoom_mm ? zoom_.at(*active().zoom_mm).px : 0.0;
   const double wanted_px = held_radius(planned * radius / range, input.intrinsics);
@@ -186,7 +184,7 @@ GazeController::Aim GazeController::aim_for(const GazeInput& input,
   Aim aim;
   aim.p_r = landmark_in_base(input, landmark);
   aim.now = reachable(aim_at(geometry_, aim.p_r), input.head.angles);
-  // Of the aim, not of where the head is: on its way the head may have the landmark behind it.
+  // Of the aim, not of where the head is: during a slew the head may have the landmark behind it.
   const Eigen::Vector3d p_c = camera_in_base(geometry_, aim.now).inverse() * aim.p_r;
   if (p_c.z() > 0.0) aim.forward = servo_.compensation(p_c, aim.now, input.base);
 
@@ -274,7 +272,7 @@ GazeOutput GazeController::search(const GazeInput& input, const Landmark& landma
   return output;
 }
 
-GazeOutput GazeController::watch(const GazeInput& input, const Landmark& landmark) {
+GazeOutput GazeController::track(const GazeInput& input, const Landmark& landmark) {
   GazeOutput output;
   last_seen_ = input.now;
   if (state_ != GazeState::track) {

@@ -7,44 +7,63 @@
 #include "vigia/core/angle.hpp"
 #include "vigia/core/plane_geometry.hpp"
 #include "vigia/core/random.hpp"
+#include "vigia/sim/params.hpp"
 #include "vigia/sim/scene.hpp"
 
 namespace vigia::sim {
 namespace {
 
 const std::vector<std::string> kKinds{"blob", "ellipse", "ring", "square", "half_disc"};
+const Bounds kGrey{0.0, 255.0};
 
-Clutter read_clutter(MapReader& reader, const WorldMap& world) {
-  Clutter clutter;
-  clutter.kind = static_cast<ClutterKind>(reader.choice("kind", kKinds));
-  clutter.centre_w = reader.vector3("centre_m", {-1e4, 1e4});
-  clutter.on_floor = reader.boolean("on_floor", false);
-  if (!clutter.on_floor)
-    clutter.normal_yaw = from_deg(reader.number("normal_deg", {-360.0, 360.0}));
-  clutter.size_m = reader.number("size_m", {0.005, 2.0}, 0.05);
-  clutter.turn = from_deg(reader.number("turn_deg", {-360.0, 360.0}, 0.0));
-  clutter.grey = reader.number("grey", {0.0, 255.0}, 60.0);
-  reader.finish();
+/// Whether the mark lies on a face (within 2 cm) whose normal is the mark's.
+bool lies_on_a_face(const Clutter& mark, const FloorPlan& plan) {
+  const Eigen::Vector2d normal = unit_vector(mark.normal_yaw);
+  const Eigen::Vector2d p = mark.centre_w.head<2>();
+  return std::any_of(plan.faces().begin(), plan.faces().end(), [&](const Wall& face) {
+    const Eigen::Vector2d along = (face.b - face.a).normalized();
+    const double s = along.dot(p - face.a);
+    return std::abs(along.dot(normal)) < 0.1 && s >= 0.0 && s <= (face.b - face.a).norm() &&
+           (p - face.a - s * along).norm() < 0.02 && mark.centre_w.z() >= 0.0 &&
+           mark.centre_w.z() <= face.height_m;
+  });
+}
 
-  if (clutter.on_floor) {
-    if (std::abs(clutter.centre_w.z()) > 0.02)
-      throw reader.error("centre_m", "clutter on the floor must have height 0");
-    return clutter;
-  }
-  const Eigen::Vector2d normal = unit_vector(clutter.normal_yaw);
-  const Eigen::Vector2d p = clutter.centre_w.head<2>();
-  const bool on_face =
-      std::any_of(world.plan.faces().begin(), world.plan.faces().end(), [&](const Wall& face) {
-        const Eigen::Vector2d along = (face.b - face.a).normalized();
-        const double s = along.dot(p - face.a);
-        return std::abs(along.dot(normal)) < 0.1 && s >= 0.0 && s <= (face.b - face.a).norm() &&
-               (p - face.a - s * along).norm() < 0.02 && clutter.centre_w.z() >= 0.0 &&
-               clutter.centre_w.z() <= face.height_m;
-      });
-  if (!on_face)
-    throw reader.error("centre_m",
-                       "clutter must lie on a face (within 2 cm) whose normal is normal_deg");
-  return clutter;
+void describe_mark(ParamVisitor& v, const WorldMap& world, Clutter& mark) {
+  v.choice("kind", mark.kind, kKinds, About("what it looks like").required());
+  v.vector("centre_m", mark.centre_w, {-1e4, 1e4}, About("on a face or on the floor").required());
+  v.boolean("on_floor", mark.on_floor, "lies on the floor");
+  v.where(!mark.on_floor, "`on_floor: false`", [&] {
+    v.angle("normal_deg", mark.normal_yaw, {-360.0, 360.0},
+            About("the normal of its face, from the world's x axis").required());
+  });
+  v.number("size_m", mark.size_m, {0.005, 2.0}, "half its greatest width");
+  v.angle("turn_deg", mark.turn, {-360.0, 360.0}, "about the normal");
+  v.number("grey", mark.grey, kGrey, About("of its surface").in("grey levels"));
+  if (v.reader() == nullptr) return;
+  if (mark.on_floor)
+    v.require(std::abs(mark.centre_w.z()) <= 0.02, "centre_m",
+              "clutter on the floor must have height 0");
+  else
+    v.require(lies_on_a_face(mark, world.plan), "centre_m",
+              "clutter must lie on a face (within 2 cm) whose normal is normal_deg");
+}
+
+void describe_surfaces(ParamVisitor& v, Appearance& a) {
+  v.integer("seed", a.seed, {0.0, 1e15}, "of textures and random clutter");
+  v.number("contrast", a.contrast, {0.0, 3.0}, "of every texture; 0: plain surfaces");
+  v.number("light", a.light, {0.0, 10.0}, "gain of the whole picture");
+  v.number("light_kelvin", a.light_kelvin, {1500.0, 20000.0}, "colour of the lamp; 6500: white");
+  v.number("wall_grey", a.wall_grey, kGrey, "of the walls");
+  v.number("floor_grey", a.floor_grey, kGrey, "of the floor");
+  v.number("ceiling_grey", a.ceiling_grey, kGrey, "of the ceiling");
+  v.number("obstacle_grey", a.obstacle_grey, kGrey, "of the obstacles");
+  v.number("disc_grey", a.disc_grey, kGrey, "of the discs");
+  v.number("plate_grey", a.plate_grey, kGrey, "of the sheet round a disc");
+  v.number("plate_factor", a.plate_factor, {1.05, 10.0},
+           "half the sheet's width over the disc's radius");
+  v.choice("plate_shape", a.plate_shape, {"square", "disc"}, "how the sheet round a disc is cut");
+  v.number("clutter_per_m2", a.clutter_per_m2, {0.0, 20.0}, "marks scattered at random");
 }
 
 bool near_landmark(const Eigen::Vector3d& p, const WorldMap& world, double plate_factor) {
@@ -66,7 +85,8 @@ Clutter random_mark(RandomStream& random) {
 
 /// Marks on both sides of the faces and spots on the floor, so many a square metre, away from the
 /// landmarks.
-void scatter(const WorldMap& world, double per_m2, Appearance& appearance) {
+void scatter(const WorldMap& world, Appearance& appearance) {
+  const double per_m2 = appearance.clutter_per_m2;
   RandomStream random(appearance.seed, "clutter");
   for (const Wall& face : world.plan.faces()) {
     const Eigen::Vector2d along = face.b - face.a;
@@ -99,29 +119,18 @@ void scatter(const WorldMap& world, double per_m2, Appearance& appearance) {
 
 }  // namespace
 
+void describe_appearance(ParamVisitor& v, const WorldMap& world, Appearance& appearance) {
+  v.map("appearance", "looks of the building; grey levels are before the light's gain",
+        [&] { describe_surfaces(v, appearance); });
+  v.each("clutter", "dark marks that are no landmarks",
+         [&] { describe_mark(v, world, appearance.clutter.emplace_back()); });
+  if (v.reader() != nullptr) scatter(world, appearance);
+}
+
 std::shared_ptr<const Appearance> read_appearance(MapReader& reader, const WorldMap& world) {
-  const Range grey{0.0, 255.0};
   auto appearance = std::make_shared<Appearance>();
-  MapReader look = reader.map("appearance");
-  appearance->seed = static_cast<std::uint64_t>(look.integer("seed", {0.0, 1e15}, 1));
-  appearance->contrast = look.number("contrast", {0.0, 3.0}, appearance->contrast);
-  appearance->light = look.number("light", {0.0, 10.0}, appearance->light);
-  appearance->light_kelvin =
-      look.number("light_kelvin", {1500.0, 20000.0}, appearance->light_kelvin);
-  appearance->wall_grey = look.number("wall_grey", grey, appearance->wall_grey);
-  appearance->floor_grey = look.number("floor_grey", grey, appearance->floor_grey);
-  appearance->ceiling_grey = look.number("ceiling_grey", grey, appearance->ceiling_grey);
-  appearance->obstacle_grey = look.number("obstacle_grey", grey, appearance->obstacle_grey);
-  appearance->disc_grey = look.number("disc_grey", grey, appearance->disc_grey);
-  appearance->plate_grey = look.number("plate_grey", grey, appearance->plate_grey);
-  appearance->plate_factor = look.number("plate_factor", {1.05, 10.0}, appearance->plate_factor);
-  appearance->plate_shape =
-      static_cast<PlateShape>(look.choice("plate_shape", {"square", "disc"}, 0));
-  const double per_m2 = look.number("clutter_per_m2", {0.0, 20.0}, 0.25);
-  look.finish();
-  for (MapReader& item : reader.maps("clutter"))
-    appearance->clutter.push_back(read_clutter(item, world));
-  scatter(world, per_m2, *appearance);
+  ParamReader visitor(reader);
+  describe_appearance(visitor, world, *appearance);
   return appearance;
 }
 

@@ -1,123 +1,121 @@
-#include "vigia/sim/disturbances.hpp"
+#include <utility>
 
-#include <string>
+#include "vigia/sim/params.hpp"
 
 namespace vigia::sim {
-namespace {
 
-double degrees(MapReader& reader, const std::string& key, Range range, double fallback) {
-  return from_deg(reader.number(key, range, to_deg(fallback)));
+// Each disturbance's keys. Their defaults are what `realistic` means.
+
+void describe(ParamVisitor& v, MotionBlurParams& p) {
+  v.number("exposure_s", p.exposure_s, {0.0, 1.0}, "how long the shutter is open");
+  v.integer("max_instants", p.max_instants, {1, 256}, "of which the mean is taken, at most");
 }
 
-void read(MapReader& r, MotionBlurParams& p) {
-  p.exposure_s = r.number("exposure_s", {0.0, 1.0}, p.exposure_s);
-  p.most_instants = static_cast<int>(r.integer("most_instants", {1, 256}, p.most_instants));
+void describe(ParamVisitor& v, LatencyParams& p) {
+  v.number("latency_s", p.latency_s, {0.0, 10.0}, "from the middle of the exposure");
+  v.number(
+      "processing_s", p.processing_s, {0.0, 10.0},
+      "that a frame takes once it has arrived; the newest of those that arrive meanwhile is next");
 }
 
-void read(MapReader& r, LatencyParams& p) {
-  p.latency_s = r.number("latency_s", {0.0, 10.0}, p.latency_s);
+void describe(ParamVisitor& v, LightParams& p) {
+  v.number("room", p.room, {0.0, 0.9}, "± of the gain over the room");
+  v.number("drift", p.drift, {0.0, 0.9}, "± of the whole light in time");
+  v.number("drift_period_s", p.drift_period_s, {1.0, 1e5}, "of the drift's slowest wave");
+  v.number("lamp_step", p.lamp_step, {0.0, 1.0}, "share of its light that a lamp may lose");
+  v.number("step_every_s", p.step_every_s, {0.0, 1e5}, "mean time between two steps; 0: none");
 }
 
-void read(MapReader& r, LightParams& p) {
-  p.room = r.number("room", {0.0, 0.9}, p.room);
-  p.drift = r.number("drift", {0.0, 0.9}, p.drift);
-  p.drift_period_s = r.number("drift_period_s", {1.0, 1e5}, p.drift_period_s);
-  p.lamp_step = r.number("lamp_step", {0.0, 1.0}, p.lamp_step);
-  p.step_every_s = r.number("step_every_s", {0.0, 1e5}, p.step_every_s);
+void describe(ParamVisitor& v, MountingParams& p) {
+  v.angle("angle_deg", p.angle, {0.0, 10.0}, "σ of the head's yaw, pitch and roll on the base");
+  v.number("offset_m", p.offset_m, {0.0, 0.5}, "σ of its place, each coordinate");
 }
 
-void read(MapReader& r, MountingParams& p) {
-  p.angle = degrees(r, "angle_deg", {0.0, 10.0}, p.angle);
-  p.offset_m = r.number("offset_m", {0.0, 0.5}, p.offset_m);
+void describe(ParamVisitor& v, ZoomCalibrationParams& p) {
+  v.number("sigma", p.sigma, {0.0, 0.2}, "relative rms error of the focal lengths");
 }
 
-void read(MapReader& r, ZoomCalibrationParams& p) {
-  p.sigma = r.number("sigma", {0.0, 0.2}, p.sigma);
+void describe(ParamVisitor& v, PrincipalPointParams& p) {
+  v.number("drift_px", p.drift_px, {0.0, 100.0}, "from one end of the zoom to the other");
 }
 
-void read(MapReader& r, PrincipalPointParams& p) {
-  p.drift_px = r.number("drift_px", {0.0, 100.0}, p.drift_px);
+void describe(ParamVisitor& v, BacklashParams& p) {
+  v.angle("width_deg", p.width, {0.0, 10.0}, "play of the encoders");
 }
 
-void read(MapReader& r, BacklashParams& p) {
-  p.width = degrees(r, "width_deg", {0.0, 10.0}, p.width);
+void describe(ParamVisitor& v, WheelSlipParams& p) {
+  v.number("per_m", p.per_m, {0.0, 100.0}, "slips that begin per metre driven");
+  v.number("min_m", p.min_m, {0.0, 10.0}, "length of a slip");
+  v.number("max_m", p.max_m, {bound_of("min_m", p.min_m), 10.0}, "length of a slip");
+  v.number("min_loss", p.min_loss, {0.0, 1.0}, "share of the way that a slip costs");
+  v.number("max_loss", p.max_loss, {bound_of("min_loss", p.min_loss), 1.0},
+           "share of the way that a slip costs");
+  v.angle("skew_deg_per_m", p.skew_per_m, {0.0, 90.0}, "σ of the turn that a slip adds");
+  v.number("diameter", p.diameter, {0.0, 0.2}, "σ of the relative error of the wheels' diameter");
+  v.number("base", p.base, {0.0, 0.2}, "σ of the relative error of the wheel base");
 }
 
-void read(MapReader& r, WheelSlipParams& p) {
-  p.per_m = r.number("per_m", {0.0, 100.0}, p.per_m);
-  p.least_m = r.number("least_m", {0.0, 10.0}, p.least_m);
-  p.most_m = r.number("most_m", {p.least_m, 10.0}, p.most_m);
-  p.least_loss = r.number("least_loss", {0.0, 1.0}, p.least_loss);
-  p.most_loss = r.number("most_loss", {p.least_loss, 1.0}, p.most_loss);
-  p.skew_per_m = degrees(r, "skew_deg_per_m", {0.0, 90.0}, p.skew_per_m);
-  p.diameter = r.number("diameter", {0.0, 0.2}, p.diameter);
-  p.base = r.number("base", {0.0, 0.2}, p.base);
+void describe(ParamVisitor& v, MapErrorParams& p) {
+  v.number("sigma_m", p.sigma_m, {0.0, 0.5},
+           "σ of a landmark's place in its plane, each coordinate");
+  v.angle("turn_deg", p.turn, {0.0, 20.0}, "σ of its turn about the vertical");
 }
 
-void read(MapReader& r, MapErrorParams& p) {
-  p.sigma_m = r.number("sigma_m", {0.0, 0.5}, p.sigma_m);
-  p.turn = degrees(r, "turn_deg", {0.0, 20.0}, p.turn);
+void describe(ParamVisitor& v, MissingLandmarksParams& p) {
+  v.number("probability", p.probability, {0.0, 1.0}, "of each landmark");
+  v.integer("at_most_one_in", p.at_most_one_in, {1, 1000}, "landmarks; a map of fewer lacks none");
 }
 
-void read(MapReader& r, MissingLandmarksParams& p) {
-  p.probability = r.number("probability", {0.0, 1.0}, p.probability);
-  p.at_most_one_in = static_cast<int>(r.integer("at_most_one_in", {1, 1000}, p.at_most_one_in));
+void describe(ParamVisitor& v, PeopleParams& p) {
+  v.integer("count", p.count, {0, 50}, "of them");
+  v.number("radius_m", p.radius_m, {0.1, 0.6}, "of a person");
+  v.number("height_m", p.height_m, {0.5, 2.5}, "of a person");
+  v.number("speed_mps", p.speed_mps, {0.0, 3.0}, "of the fastest; the slowest has half of it");
+  v.number("pause_probability", p.pause_probability, {0.0, 1.0}, "at the end of each leg");
+  v.number("longest_pause_s", p.longest_pause_s, {0.0, 600.0}, "of a pause");
+  v.number("distance_m", p.distance_m, {0.0, 3.0}, "that they keep from the robot's hull");
 }
 
-void read(MapReader& r, PeopleParams& p) {
-  p.count = static_cast<int>(r.integer("count", {0, 50}, p.count));
-  p.radius_m = r.number("radius_m", {0.1, 0.6}, p.radius_m);
-  p.height_m = r.number("height_m", {0.5, 2.5}, p.height_m);
-  p.speed_mps = r.number("speed_mps", {0.0, 3.0}, p.speed_mps);
-  p.pause_probability = r.number("pause_probability", {0.0, 1.0}, p.pause_probability);
-  p.longest_pause_s = r.number("longest_pause_s", {0.0, 600.0}, p.longest_pause_s);
-  p.distance_m = r.number("distance_m", {0.0, 3.0}, p.distance_m);
+void describe(ParamVisitor& v, ClutterParams& p) {
+  v.integer("marks", p.marks, {0, 1000}, "dark and round");
+  v.integer("plates", p.plates, {0, 1000}, "light, with a dark mark on them");
 }
 
-void read(MapReader& r, ClutterParams& p) {
-  p.marks = static_cast<int>(r.integer("marks", {0, 1000}, p.marks));
-  p.plates = static_cast<int>(r.integer("plates", {0, 1000}, p.plates));
+void describe(ParamVisitor& v, KidnappingParams& p) {
+  v.number("earliest_s", p.earliest_s, {0.0, 1e5}, "of the random time");
+  v.number("latest_s", p.latest_s, {bound_of("earliest_s", p.earliest_s), 1e5},
+           "of the random time");
+  v.number("min_m", p.min_m, {0.0, 100.0}, "from where it was");
 }
 
-void read(MapReader& r, KidnappingParams& p) {
-  p.earliest_s = r.number("earliest_s", {0.0, 1e5}, p.earliest_s);
-  p.latest_s = r.number("latest_s", {p.earliest_s, 1e5}, p.latest_s);
-  p.least_m = r.number("least_m", {0.0, 100.0}, p.least_m);
+void describe(ParamVisitor& v, DisturbanceParams& p) {
+  enum class All { off, realistic };
+  auto all = All::off;
+  v.choice("all", all, {"off", "realistic"}, "of every key that is absent, but `kidnapping`");
+  const bool on = all == All::realistic;
+  v.toggle("motion_blur", p.motion_blur, on,
+           "a frame is the mean over the camera's motion while the shutter is open");
+  v.toggle("latency", p.latency, on, "a frame arrives late, and takes time to process");
+  v.toggle("light", p.light, on, "the light's gain varies over the room and in time");
+  v.toggle("mounting", p.mounting, on, "the head sits a little askew on the base");
+  v.toggle("zoom_calibration", p.zoom_calibration, on,
+           "the table of focal lengths is a little wrong, smoothly over the zoom");
+  v.toggle("principal_point", p.principal_point, on, "the optical axis wanders as the lens zooms");
+  v.toggle("backlash", p.backlash, on, "pan and tilt encoders follow the axes with play");
+  v.toggle("wheel_slip", p.wheel_slip, on, "the wheels do not report what the base does");
+  v.toggle("map_error", p.map_error, on, "landmarks hang a little off the place that the map has");
+  v.toggle("missing_landmarks", p.missing_landmarks, on,
+           "landmarks of the map that the room lacks");
+  v.toggle("people", p.people, on,
+           "walk about, hide what is behind them, keep a distance from the robot");
+  v.toggle("clutter", p.clutter, on, "marks on the walls that resemble landmarks");
+  v.toggle("kidnapping", p.kidnapping, false,
+           "at a random time the robot is put elsewhere; odometry does not notice");
 }
-
-/// off, realistic, or a map.
-template <typename Params>
-void read_switch(MapReader& reader, const std::string& key, bool on,
-                 std::optional<Params>& params) {
-  if (reader.holds_map(key)) {
-    params.emplace();
-    MapReader detail = reader.map(key);
-    read(detail, *params);
-    detail.finish();
-  } else if (reader.choice(key, {"off", "realistic"}, on ? 1 : 0) == 1) {
-    params.emplace();
-  }
-}
-
-}  // namespace
 
 DisturbanceParams read_disturbances(MapReader reader) {
   DisturbanceParams params;
-  const bool all = reader.choice("all", {"off", "realistic"}, 0) == 1;
-  read_switch(reader, "motion_blur", all, params.motion_blur);
-  read_switch(reader, "latency", all, params.latency);
-  read_switch(reader, "light", all, params.light);
-  read_switch(reader, "mounting", all, params.mounting);
-  read_switch(reader, "zoom_calibration", all, params.zoom_calibration);
-  read_switch(reader, "principal_point", all, params.principal_point);
-  read_switch(reader, "backlash", all, params.backlash);
-  read_switch(reader, "wheel_slip", all, params.wheel_slip);
-  read_switch(reader, "map_error", all, params.map_error);
-  read_switch(reader, "missing_landmarks", all, params.missing_landmarks);
-  read_switch(reader, "people", all, params.people);
-  read_switch(reader, "clutter", all, params.clutter);
-  read_switch(reader, "kidnapping", false, params.kidnapping);
-  reader.finish();
+  read_params(std::move(reader), params);
   return params;
 }
 

@@ -33,8 +33,8 @@ std::optional<Pose2> Kidnapping::due(Stamp now, const Pose2& from, double radius
     double clearance = plan.clearance(pose.position()) - kFromWall;
     if (people != nullptr)
       clearance = std::min(clearance, people->clearance(pose.position()) - kFromPeople);
-    const double room = std::min(clearance - radius_m,
-                                 (pose.position() - from.position()).norm() - params_.least_m);
+    const double room =
+        std::min(clearance - radius_m, (pose.position() - from.position()).norm() - params_.min_m);
     if (room <= best_room) continue;
     best = pose;
     best_room = room;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "vigia/core/plane_geometry.hpp"
+#include "vigia/sim/params.hpp"
 
 namespace vigia::sim {
 namespace {
@@ -104,17 +105,14 @@ RangeScan RangeRing::scan(Stamp stamp, const Pose2& pose, const FloorPlan& plan,
   return scan;
 }
 
-RangeRingParams read_range_ring(MapReader reader) {
-  RangeRingParams params;
-  params.beams = static_cast<int>(reader.integer("beams", {1, 720}, params.beams));
-  params.reach_m = reader.number("reach_m", {0.1, 100.0}, params.reach_m);
-  params.sigma_m = reader.number("sigma_m", {0.0, 1.0}, params.sigma_m);
-  params.sigma_relative = reader.number("sigma_relative", {0.0, 1.0}, params.sigma_relative);
-  params.cone = from_deg(reader.number("cone_deg", {0.1, 170.0}, to_deg(params.cone)));
-  params.height_m = reader.number("height_m", {0.0, 3.0}, params.height_m);
-  params.dropout = reader.number("dropout", {0.0, 1.0}, params.dropout);
-  reader.finish();
-  return params;
+void describe(ParamVisitor& v, RangeRingParams& p) {
+  v.integer("beams", p.beams, {1, 720}, "spread evenly round the base");
+  v.number("reach_m", p.reach_m, {0.1, 100.0}, "of a beam");
+  v.number("sigma_m", p.sigma_m, {0.0, 1.0}, "constant part of an echo's σ");
+  v.number("sigma_relative", p.sigma_relative, {0.0, 1.0}, "part of σ that grows with the range");
+  v.angle("cone_deg", p.cone, {0.1, 170.0}, "full opening angle of a beam");
+  v.number("height_m", p.height_m, {0.0, 3.0}, "above the floor: what is lower gives no echo");
+  v.number("dropout", p.dropout, {0.0, 1.0}, "share of the echoes that do not come back");
 }
 
 }  // namespace vigia::sim

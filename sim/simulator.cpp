@@ -60,7 +60,10 @@ Simulator::Simulator(const RobotSetup& setup, const WorldMap& world,
   if (disturbances.light) light_.emplace(*disturbances.light, world_.plan, seed);
   if (disturbances.people) walkers_.emplace(*disturbances.people, world_.plan, bystander(), seed);
   if (disturbances.kidnapping) kidnapping_.emplace(*disturbances.kidnapping, seed);
-  if (disturbances.latency) latency_ = Duration::from_seconds(disturbances.latency->latency_s);
+  if (disturbances.latency) {
+    latency_ = Duration::from_seconds(disturbances.latency->latency_s);
+    processing_ = Duration::from_seconds(disturbances.latency->processing_s);
+  }
   if (setup_.range_ring) ring_.emplace(*setup_.range_ring, seed);
 }
 
@@ -105,7 +108,7 @@ std::vector<Exposure::Instant> Simulator::instants(const Intrinsics& intrinsics)
         intrinsics);
     if (moved > kStill_px)
       count =
-          static_cast<int>(std::min<double>(motion_blur_->most_instants, 1.0 + std::ceil(moved)));
+          static_cast<int>(std::min<double>(motion_blur_->max_instants, 1.0 + std::ceil(moved)));
   }
   if (count == 1) return {{robot_.camera_pose(), people}};
   std::vector<Exposure::Instant> instants;

@@ -18,8 +18,8 @@ double WheelSlip::draw_gap() {
 }
 
 void WheelSlip::begin_slip() {
-  slip_left_m_ = random_.uniform(params_.least_m, params_.most_m);
-  loss_ = random_.uniform(params_.least_loss, params_.most_loss);
+  slip_left_m_ = random_.uniform(params_.min_m, params_.max_m);
+  loss_ = random_.uniform(params_.min_loss, params_.max_loss);
   skew_per_m_ = params_.skew_per_m * random_.normal();
   gap_left_m_ = draw_gap();
 }

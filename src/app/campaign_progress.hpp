@@ -10,7 +10,7 @@
 namespace vigia::app {
 
 /// Tells on stderr how far a campaign is: one line that is rewritten on a terminal, a line every
-/// tenth of the way elsewhere, nothing when quiet.
+/// tenth of the missions elsewhere, nothing when quiet.
 class CampaignLine {
  public:
   explicit CampaignLine(bool quiet);

@@ -6,29 +6,32 @@
 
 namespace vigia::app {
 
-void DrivePicture::on_start(const mission::MissionSetup& setup, std::uint64_t /*seed*/) {
-  setup_ = &setup;
+void DrivePicture::on_start(const mission::MissionStart& start) {
+  setup_ = &start.setup;
 }
 
 void DrivePicture::on_tick(const mission::Tick& tick) {
   const auto& names = setup_->localizers;
   truth_.push_back(tick.truth.pose);
-  const Belief& primary = *tick.localizers[tick.primary].belief;
+  const Belief& primary = tick.estimator.primary_belief();
   estimate_.push_back({primary.pose, primary.covariance});
   const auto odometry = std::find(names.begin(), names.end(), "odometry");
   if (odometry != names.end())
     odometry_.push_back(
-        tick.localizers[static_cast<std::size_t>(odometry - names.begin())].belief->pose);
+        tick.estimator.localizers[static_cast<std::size_t>(odometry - names.begin())].belief->pose);
   note_look(tick);
 }
 
 void DrivePicture::note_look(const mission::Tick& tick) {
-  if (tick.observation == nullptr || !tick.order) return;
-  const auto& update = tick.localizers[tick.primary].update;
-  const bool fused = update && update->status == localization::UpdateStatus::fused;
-  if (tick.look != look_) {
-    look_ = tick.look;
-    looks_.push_back({tick.order->landmark, tick.truth.pose.position(), fused});
+  if (tick.estimator.observations.empty() || !tick.attention || !tick.attention->order) return;
+  const mission::AttentionTick& attention = *tick.attention;
+  const auto& updates = tick.estimator.localizers[tick.estimator.primary].updates;
+  const bool fused = std::any_of(updates.begin(), updates.end(), [](const auto& update) {
+    return update.status == localization::UpdateStatus::fused;
+  });
+  if (attention.look != look_) {
+    look_ = attention.look;
+    looks_.push_back({attention.order->landmark, tick.truth.pose.position(), fused});
   }
   looks_.back().fused = looks_.back().fused || fused;
 }

@@ -12,7 +12,7 @@ namespace vigia::app {
 /// Collects what map.png shows of a drive.
 class DrivePicture : public mission::Listener {
  public:
-  void on_start(const mission::MissionSetup& setup, std::uint64_t seed) override;
+  void on_start(const mission::MissionStart& start) override;
   void on_tick(const mission::Tick& tick) override;
 
   /// What was collected, with title and figures. Refers to the mission's world.

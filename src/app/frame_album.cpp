@@ -13,42 +13,47 @@ namespace {
 /// A tracked landmark has settled in the middle of the picture after this long.
 constexpr double kSettled_s = 0.5;
 
-report::Overlay overlay_of(const mission::Tick& tick) {
-  report::Overlay overlay;
-  overlay.predicted = tick.predicted;
-  if (tick.observation != nullptr) {
-    const Intrinsics& camera = pinhole(shot_of(*tick.observation));
-    if (const auto* disc = std::get_if<EllipseObservation>(tick.observation))
-      overlay.measured = disc->ellipse;
-    if (const auto* seen = std::get_if<PointsObservation>(tick.observation))
-      for (const LabelledPoint& point : seen->points) overlay.points.push_back(point.uv);
-    overlay.principal_point = Eigen::Vector2d(camera.u0, camera.v0);
+/// What the eye made of the frame, and what its attention was about.
+imaging::Overlay overlay_of(const mission::Tick& tick, const perception::Eye& eye) {
+  imaging::Overlay overlay = eye.overlay();
+  const double t_s = tick.estimator.now.seconds();
+  if (!tick.attention) {
+    overlay.lines.push_back(fmt::format("t = {:.2f} s", t_s));
+    return overlay;
   }
-  overlay.lines.push_back(
-      fmt::format("t = {:.2f} s   {}", tick.now.seconds(), to_string(tick.gaze)));
-  if (tick.order)
+  const mission::AttentionTick& attention = *tick.attention;
+  overlay.lines.push_back(fmt::format("t = {:.2f} s   {}", t_s, to_string(attention.gaze)));
+  if (attention.order)
     overlay.lines.push_back(fmt::format("landmark {}   look {}   zoom {:.1f} mm",
-                                        tick.order->landmark, tick.look, tick.head.zoom_mm));
-  if (tick.centring_px)
-    overlay.lines.push_back(fmt::format("off centre {:.2f} px", *tick.centring_px));
+                                        attention.order->landmark, attention.look,
+                                        tick.head.zoom_mm));
+  if (attention.centring_px)
+    overlay.lines.push_back(fmt::format("off centre {:.2f} px", *attention.centring_px));
   return overlay;
 }
 
 }  // namespace
 
-void FrameAlbum::on_start(const mission::MissionSetup& setup, std::uint64_t /*seed*/) {
-  count_ = setup.recorded_frames;
-  spacing_m_ = setup.path.length() / std::max(1, count_);
+void FrameAlbum::on_start(const mission::MissionStart& start) {
+  count_ = start.setup.recorded_frames;
+  spacing_m_ = start.setup.path.length() / std::max(1, count_);
+  first_eye_ = start.eyes.empty() ? nullptr : start.eyes.front();
 }
 
 void FrameAlbum::on_tick(const mission::Tick& tick) {
-  if (static_cast<int>(pictures_.size()) >= count_) return;
-  if (tick.observation == nullptr || tick.tracked_s < kSettled_s || tick.station_m < due_m_) return;
-  due_m_ = tick.station_m + spacing_m_;
-  Picture picture{fmt::format("frame_{:03}_t{:06.2f}s.png", pictures_.size(), tick.now.seconds()),
-                  imaging::colour_image(tick.frame)};
-  report::draw_overlay(picture.image, overlay_of(tick));
-  pictures_.push_back(std::move(picture));
+  if (tick.estimator.observations.empty() || tick.station_m < due_m_) return;
+  if (tick.attention && tick.attention->tracked_s < kSettled_s) return;
+  for (const mission::EyeTick& shown : tick.eyes) {
+    if (!shown.observed || static_cast<int>(pictures_.size()) >= count_) continue;
+    due_m_ = tick.station_m + spacing_m_;
+    const std::string camera =
+        shown.eye == first_eye_ ? "" : fmt::format("_camera{}", shown.camera);
+    Picture picture{fmt::format("frame_{:03}_t{:06.2f}s{}.png", pictures_.size(),
+                                tick.estimator.now.seconds(), camera),
+                    imaging::colour_image(*shown.frame)};
+    report::draw_overlay(picture.image, overlay_of(tick, *shown.eye));
+    pictures_.push_back(std::move(picture));
+  }
 }
 
 void FrameAlbum::write(const std::filesystem::path& folder) const {

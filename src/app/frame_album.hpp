@@ -11,11 +11,12 @@
 
 namespace vigia::app {
 
-/// Keeps a few camera pictures with overlay, spread evenly over the drive, each taken while a
-/// landmark is tracked.
+/// Keeps a few camera pictures with what their eyes made of them, spread evenly over the drive,
+/// each taken while something is observed; by a camera that is directed, once its target has
+/// settled.
 class FrameAlbum : public mission::Listener {
  public:
-  void on_start(const mission::MissionSetup& setup, std::uint64_t seed) override;
+  void on_start(const mission::MissionStart& start) override;
   /// Takes this tick's picture when one is due.
   void on_tick(const mission::Tick& tick) override;
 
@@ -31,6 +32,7 @@ class FrameAlbum : public mission::Listener {
   int count_ = 0;
   double spacing_m_ = 0.0;
   double due_m_ = 0.0;
+  const perception::Eye* first_eye_ = nullptr;
   std::vector<Picture> pictures_;
 };
 

@@ -1,4 +1,5 @@
 #include "commands.hpp"
+#include "usage_mistake.hpp"
 
 #include <cstdio>
 #include <exception>
@@ -38,13 +39,14 @@ int run_program(int argc, char** argv) {
   vigia::app::add_landmark(app, status);
   vigia::app::add_evaluate(app, status);
   vigia::app::add_reproduce(app, status);
+  vigia::app::add_help(app, status);
   try {
     app.parse(argc, argv);
     return status;
   } catch (const CLI::Success& success) {
     return app.exit(success);
   } catch (const CLI::ParseError& error) {
-    app.exit(error);
+    spdlog::error("{}; see vigia help", vigia::app::usage_mistake(app, error));
     return kWrongInput;
   } catch (const vigia::InputError& error) {
     spdlog::error("{}", error.what());

@@ -1,5 +1,6 @@
 #include "commands.hpp"
 #include "plan_table.hpp"
+#include "usage_mistake.hpp"
 
 #include <iostream>
 #include <memory>
@@ -76,7 +77,7 @@ void add_plan(CLI::App& app, int& status) {
       "plan", "Plan a mission's looks: control areas, landmarks, suitability, zoom");
   command->add_option("mission", options->mission, "Mission file (YAML)")->required();
   command->add_option("--policy", options->policies, "Policy, repeatable (default: the mission's)")
-      ->check(CLI::IsMember(planner::look_policy_names()))
+      ->check(one_of(names_of(planner::look_policies())))
       ->allow_extra_args(false);
   command->add_option("--out", options->out, "Folder for the picture plan.png");
   command->add_option("--set", options->overrides, "Override a key of the mission")

@@ -7,12 +7,20 @@
 #include <nlohmann/json.hpp>
 
 #include "vigia/core/error.hpp"
-#include "vigia/localization/points_information.hpp"
+#include "vigia/localization/landmark_information.hpp"
 #include "vigia/planner/look_policy.hpp"
 #include "vigia/report/plan_picture.hpp"
 
 namespace vigia::app {
 namespace {
+
+localization::LandmarkInformationParams information_params(const mission::MissionSetup& setup) {
+  localization::LandmarkInformationParams params;
+  params.sensor = setup.noise.sensor;
+  params.radius_px = setup.look.radius_px;
+  params.fill = setup.look.fill;
+  return params;
+}
 
 /// What a policy is asked with, at a control position.
 class PolicyAtPositions {
@@ -22,11 +30,7 @@ class PolicyAtPositions {
       : setup_(setup),
         visibility_(visibility),
         head_(head),
-        information_(
-            localization::DiscInformation(head.geometry, head.zoom,
-                                          {setup.ekf.sensor, setup.look.radius_px}, head.ground),
-            localization::PointsInformation(head.geometry, head.zoom,
-                                            {setup.ekf.sensor, setup.look.fill}, head.ground)),
+        information_(head.geometry, head.zoom, information_params(setup), head.ground),
         policy_(planner::make_look_policy(
             policy,
             {setup.look.fixed_landmark, RandomStream(setup.seed, "look policy"),
@@ -44,7 +48,7 @@ class PolicyAtPositions {
     const std::vector<LandmarkId> excluded;
     const auto choice = policy_->choose({Stamp{}, belief, head, position.station_m, setup_.path,
                                          setup_.world.landmarks, visibility_, information_,
-                                         excluded, head_, 0.0, false, setup_.ekf.odometry});
+                                         excluded, head_, 0.0, false, setup_.noise.odometry});
     return choice ? std::optional(choice->landmark) : std::nullopt;
   }
 

@@ -9,7 +9,7 @@ class Progress : public mission::Listener {
  public:
   explicit Progress(bool quiet);
 
-  void on_start(const mission::MissionSetup& setup, std::uint64_t seed) override;
+  void on_start(const mission::MissionStart& start) override;
   void on_tick(const mission::Tick& tick) override;
   void on_finish(mission::Outcome outcome, Stamp end) override;
 

@@ -111,7 +111,7 @@ std::vector<std::pair<std::string, double>> noise_of(const mission::MissionSetup
 }
 
 /// The drive whose odometry ends most like the paper's.
-const DriveScore& most_like_the_paper(const std::vector<DriveScore>& scores) {
+const DriveScore& nearest_to_the_paper(const std::vector<DriveScore>& scores) {
   const auto off = [](const DriveScore& score) {
     const auto& odometry = score.localizers.at("odometry");
     return std::hypot(odometry.position_final_m / kOdometryPosition_m - 1.0,
@@ -179,7 +179,7 @@ evaluation::PaperTable reproduce_armingol(const PaperOptions& options) {
   };
   const Drives drives{run(pan_tilt), run(best)};
   line.finish(options.threads);
-  draw_figures(best, most_like_the_paper(drives.best), n, options.out);
+  draw_figures(best, nearest_to_the_paper(drives.best), n, options.out);
   std::vector<PaperRow> rows = rows_of(drives);
   for (const PaperRow& row : plan_rows(options)) rows.push_back(row);
   return {

@@ -22,4 +22,9 @@ double Belief::position_sigma() const {
   return std::sqrt(mean + std::hypot(half, covariance(0, 1)));
 }
 
+Prior anywhere() {
+  const Eigen::Vector3d sigma(100.0, 100.0, kPi);
+  return {{}, sigma.cwiseAbs2().asDiagonal()};
+}
+
 }  // namespace vigia

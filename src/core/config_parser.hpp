@@ -25,6 +25,9 @@ std::shared_ptr<ConfigNode> load_named_config(const ConfigNode& name);
 /// Whether a text read back as a plain (unquoted) scalar is that text and no null.
 bool is_plain_text(const std::string& text);
 
+/// The shortest text that reads back as the same number.
+std::string write_number(double value);
+
 /// A value as messages quote it: in single quotes, shortened when long.
 std::string quoted_for_message(const std::string& value);
 

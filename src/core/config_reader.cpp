@@ -5,24 +5,18 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <numeric>
 #include <system_error>
 
 #include "vigia/core/config.hpp"
+#include "vigia/core/renamed_keys.hpp"
+#include "vigia/core/suggestion.hpp"
 
 namespace vigia {
 namespace {
 
 using NodePtr = std::shared_ptr<ConfigNode>;
 
-/// The shortest text that reads back as the same number.
-std::string write_number(double value) {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-  return {text, end};
-}
-
-std::string describe(const ConfigNode& node) {
+std::string found_text(const ConfigNode& node) {
   switch (node.kind) {
     case ConfigNode::Kind::null:
       return "nothing";
@@ -60,41 +54,13 @@ NodePtr make_list(const double* values, Eigen::Index count, const SourceLocation
   return node;
 }
 
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substituted = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substituted});
-    }
-  }
-  return row[b.size()];
-}
-
-/// "; did you mean 'x'?" for the candidate that lies near enough to be a slip, or nothing.
-template <typename Names>
-std::string suggest(const std::string& given, const Names& candidates) {
-  const std::string* best = nullptr;
-  std::size_t best_distance = std::max<std::size_t>(2, given.size() / 2) + 1;
-  for (const std::string& candidate : candidates) {
-    const std::size_t distance = edit_distance(given, candidate);
-    if (distance < best_distance && distance < candidate.size()) {
-      best = &candidate;
-      best_distance = distance;
-    }
-  }
-  return best != nullptr ? "; did you mean '" + *best + "'?" : "";
-}
-
-template <typename Names>
-std::string join(const Names& names) {
-  std::string joined;
-  for (const std::string& name : names) joined += (joined.empty() ? "" : ", ") + name;
-  return joined;
+NodePtr make_text_list(const std::vector<std::string>& texts, const SourceLocation& where) {
+  auto node = std::make_shared<ConfigNode>();
+  node->kind = ConfigNode::Kind::list;
+  node->where = where;
+  for (const std::string& text : texts)
+    node->items.push_back(make_scalar(text, where, !is_plain_text(text)));
+  return node;
 }
 
 /// The text of a plain number without the leading plus that std::from_chars does not know.
@@ -108,7 +74,7 @@ class ValueError {
  public:
   explicit ValueError(const std::string& path) : path_(path) {}
   [[noreturn]] void fail(const ConfigNode& node, const std::string& right) const {
-    throw InputError(location(node), path_ + ": found " + describe(node) + ", " + right);
+    throw InputError(location(node), path_ + ": found " + found_text(node) + ", " + right);
   }
   void check_range(const ConfigNode& node, double value, Range range) const {
     if (value >= range.low && value <= range.high) return;
@@ -183,11 +149,21 @@ std::size_t read_choice(const ConfigNode& node, const std::string& path,
   const std::string& text = read_text(node, path);
   const auto found = std::find(choices.begin(), choices.end(), text);
   if (found == choices.end())
-    ValueError(path).fail(node, "must be one of " + join(choices) + suggest(text, choices));
+    ValueError(path).fail(node, "must be one of " + joined(choices) + suggestion(text, choices));
   return static_cast<std::size_t>(found - choices.begin());
 }
 
+InputError renamed_error(const SourceLocation& where, const RenamedKey& key) {
+  return {where, "the key '" + key.before + "' is now '" + key.now + "'"};
+}
+
 }  // namespace
+
+std::string write_number(double value) {
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+  return {text, end};
+}
 
 MapReader::MapReader(std::shared_ptr<ConfigNode> node, std::string what)
     : node_(std::move(node)), what_(std::move(what)) {
@@ -216,6 +192,9 @@ const ConfigNode& MapReader::require(const std::string& key) const {
 }
 
 InputError MapReader::missing(const std::string& key) const {
+  for (const auto& [name, value] : node_->entries)
+    if (const RenamedKey* renamed = find_renamed_key(path(name)))
+      return renamed_error(value->key_where, *renamed);
   constexpr std::size_t kSlips = 2;
   for (const auto& [name, value] : node_->entries)
     if (asked_.count(name) == 0 && edit_distance(name, key) <= kSlips)
@@ -364,6 +343,26 @@ std::vector<std::string> MapReader::texts(const std::string& key) {
   return texts;
 }
 
+std::vector<std::string> MapReader::names(const std::string& key,
+                                          const std::vector<std::string>& known,
+                                          const std::vector<std::string>& fallback) {
+  const ConfigNode* value = ask(key);
+  if (value == nullptr) {
+    resolve(key, make_text_list(fallback, where()));
+    return fallback;
+  }
+  if (value->kind != ConfigNode::Kind::list || value->items.empty())
+    ValueError(path(key)).fail(*value, "must be a list of one or more of " + joined(known));
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < value->items.size(); ++i) {
+    const std::string at = path(key) + "[" + std::to_string(i) + "]";
+    names.push_back(known[read_choice(*value->items[i], at, known)]);
+    if (std::find(names.begin(), names.end() - 1, names.back()) != names.end() - 1)
+      ValueError(at).fail(*value->items[i], "which stands in the list before");
+  }
+  return names;
+}
+
 MapReader MapReader::map(const std::string& key) {
   ask(key);
   for (const auto& [name, value] : node_->entries) {
@@ -404,10 +403,13 @@ MapReader MapReader::map_or_file(const std::string& key) {
 void MapReader::finish() const {
   for (const auto& [key, value] : node_->entries) {
     if (asked_.count(key) != 0) continue;
+    const SourceLocation& place = value->key_where.file.empty() ? value->where : value->key_where;
+    if (const RenamedKey* renamed = find_renamed_key(path(key)))
+      throw renamed_error(place, *renamed);
     const std::string of = what_.empty() ? "" : " in " + what_;
-    throw InputError(value->key_where.file.empty() ? value->where : value->key_where,
-                     "unknown key " + quoted_for_message(key) + of + suggest(key, asked_) +
-                         " (known: " + join(asked_) + ")");
+    const std::vector<std::string> known(asked_.begin(), asked_.end());
+    throw InputError(place, "unknown key " + quoted_for_message(key) + of + suggestion(key, known) +
+                                " (known: " + joined(known) + ")");
   }
 }
 

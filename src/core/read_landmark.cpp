@@ -2,76 +2,83 @@
 
 #include <cmath>
 #include <string>
-#include <vector>
 
 #include "vigia/core/angle.hpp"
 
 namespace vigia {
 namespace {
 
-const std::vector<std::string> kKinds{"disc", "pattern", "tag"};
+enum class LandmarkKind { disc, pattern, tag };
 
-int read_below(MapReader& reader, const std::string& key, int count) {
-  return static_cast<int>(reader.integer(key, {0.0, count - 1.0}));
+/// The numbers from 0 on, @p count of them.
+Bounds below(int count) {
+  return {0.0, count - 1.0};
 }
 
 /// The pattern's dots lie apart from each other and on the sheet.
-void check_dots(const PatternShape& shape, const MapReader& reader) {
+void require_dots_apart(ParamVisitor& v, const PatternShape& shape) {
   const double apart = 2.0 * shape.dot_radius_m;
-  if (shape.inner_radius_m < shape.centre_radius_m + shape.dot_radius_m)
-    throw reader.error("inner_radius_m", "the inner ring's dots touch the centre-point");
-  if (shape.outer_radius_m < shape.inner_radius_m + apart)
-    throw reader.error("outer_radius_m", "the outer ring's dots touch the inner ring's");
+  v.require(shape.inner_radius_m >= shape.centre_radius_m + shape.dot_radius_m, "inner_radius_m",
+            "the inner ring's dots touch the centre-point");
+  v.require(shape.outer_radius_m >= shape.inner_radius_m + apart, "outer_radius_m",
+            "the outer ring's dots touch the inner ring's");
   const double chord = 2.0 * shape.inner_radius_m * std::sin(kPi / kDotsPerRing);
-  if (chord < apart) throw reader.error("dot_radius_m", "the inner ring's dots touch each other");
-  if (shape.centre_radius_m < 1.2 * shape.dot_radius_m)
-    throw reader.error("centre_radius_m",
-                       "the centre-point must be at least 1.2 times as large as the other dots");
-  if (shape.sheet_half_width_m < shape.outer_radius_m + shape.dot_radius_m)
-    throw reader.error("sheet_half_width_m", "the outer ring's dots reach over the sheet's edge");
+  v.require(chord >= apart, "dot_radius_m", "the inner ring's dots touch each other");
+  v.require(shape.centre_radius_m >= 1.2 * shape.dot_radius_m, "centre_radius_m",
+            "the centre-point must be at least 1.2 times as large as the other dots");
+  v.require(shape.sheet_half_width_m >= shape.outer_radius_m + shape.dot_radius_m,
+            "sheet_half_width_m", "the outer ring's dots reach over the sheet's edge");
 }
 
-PatternShape read_pattern(MapReader& reader) {
-  const Range size{0.002, 2.0};
-  PatternShape shape;
-  shape.code.floor = read_below(reader, "floor", kFloors);
-  shape.code.room = read_below(reader, "room", kRooms);
-  shape.code.pattern = read_below(reader, "pattern", kPatterns);
-  shape.outer_radius_m = reader.number("outer_radius_m", size, shape.outer_radius_m);
-  shape.inner_radius_m = reader.number("inner_radius_m", size, shape.inner_radius_m);
-  shape.dot_radius_m = reader.number("dot_radius_m", size, shape.dot_radius_m);
-  shape.centre_radius_m = reader.number("centre_radius_m", size, shape.centre_radius_m);
-  shape.sheet_half_width_m = reader.number("sheet_half_width_m", size, shape.sheet_half_width_m);
-  check_dots(shape, reader);
+DiscShape describe_disc(ParamVisitor& v) {
+  DiscShape shape;
+  v.number("radius_m", shape.radius_m, {0.005, 2.0}, About("of the disc").required());
   return shape;
 }
 
-TagShape read_tag(MapReader& reader) {
+PatternShape describe_pattern(ParamVisitor& v) {
+  const Bounds size{0.002, 2.0};
+  PatternShape shape;
+  v.integer("floor", shape.code.floor, below(kFloors), About("that it shows").required());
+  v.integer("room", shape.code.room, below(kRooms), About("that it shows").required());
+  v.integer("pattern", shape.code.pattern, below(kPatterns), About("that it shows").required());
+  v.number("outer_radius_m", shape.outer_radius_m, size, "of the ring of the outer dots' centres");
+  v.number("inner_radius_m", shape.inner_radius_m, size, "of the ring of the inner dots' centres");
+  v.number("dot_radius_m", shape.dot_radius_m, size, "of a dot of the rings");
+  v.number("centre_radius_m", shape.centre_radius_m, size, "of the centre-point");
+  v.number("sheet_half_width_m", shape.sheet_half_width_m, size, "of the square white paper");
+  require_dots_apart(v, shape);
+  return shape;
+}
+
+TagShape describe_tag(ParamVisitor& v) {
   TagShape shape;
-  shape.tag = read_below(reader, "tag", kTags);
-  shape.side_m = reader.number("side_m", {0.01, 2.0});
+  v.integer("tag", shape.tag, below(kTags), About("the AprilTag's number, 36h11").required());
+  v.number("side_m", shape.side_m, {0.01, 2.0},
+           About("of the black square; its sheet is 1.5 times as wide").required());
   return shape;
 }
 
 }  // namespace
 
-PlacedLandmark read_landmark(MapReader reader) {
-  PlacedLandmark placed{{}, 0.0, false, reader};
-  placed.landmark.id = static_cast<LandmarkId>(reader.integer("id", {0.0, 1e6}));
-  const std::size_t kind = reader.choice("kind", kKinds);
-  const Eigen::Vector3d centre_w = reader.vector3("centre_m", kCoordinate);
-  placed.normal_yaw = from_deg(reader.number("normal_deg", {-360.0, 360.0}));
+void describe(ParamVisitor& v, PlacedLandmark& placed) {
+  v.integer("id", placed.landmark.id, {0.0, 1e6}, About("of its own").required());
+  auto kind = LandmarkKind::disc;
+  v.choice("kind", kind, {"disc", "pattern", "tag"},
+           About("a dark disc, a colour pattern or an AprilTag").required());
+  Eigen::Vector3d centre_w = Eigen::Vector3d::Zero();
+  v.vector("centre_m", centre_w, {kCoordinate.low, kCoordinate.high},
+           About("on a face of the building, unless `free_standing`").required());
+  v.angle("normal_deg", placed.normal_yaw, {-360.0, 360.0},
+          About("the direction it faces, from the world's x axis").required());
   placed.landmark.wMl = wall_mount(centre_w, placed.normal_yaw);
-  if (kind == 0)
-    placed.landmark.shape = DiscShape{reader.number("radius_m", {0.005, 2.0})};
-  else if (kind == 1)
-    placed.landmark.shape = read_pattern(reader);
-  else
-    placed.landmark.shape = read_tag(reader);
-  placed.free_standing = reader.boolean("free_standing", false);
-  reader.finish();
-  placed.reader = reader;
-  return placed;
+  v.where(kind == LandmarkKind::disc, "`kind: disc`",
+          [&] { placed.landmark.shape = describe_disc(v); });
+  v.where(kind == LandmarkKind::pattern, "`kind: pattern`",
+          [&] { placed.landmark.shape = describe_pattern(v); });
+  v.where(kind == LandmarkKind::tag, "`kind: tag`",
+          [&] { placed.landmark.shape = describe_tag(v); });
+  v.boolean("free_standing", placed.free_standing, "needs no face to lie on");
 }
 
 }  // namespace vigia

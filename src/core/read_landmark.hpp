@@ -2,10 +2,11 @@
 
 #include "world_checks.hpp"
 
+#include "vigia/core/params.hpp"
+
 namespace vigia {
 
-/// Reads one entry of `landmarks`: `id`, `kind`, `centre_m`, `normal_deg`, `free_standing` and the
-/// keys of its kind. Throws InputError.
-PlacedLandmark read_landmark(MapReader reader);
+/// The keys of one item of a world's `landmarks`. The reader is left to the caller.
+void describe(ParamVisitor& v, PlacedLandmark& placed);
 
 }  // namespace vigia

@@ -62,17 +62,17 @@ void check_in_room(const PlacedLandmark& placed, const FloorPlan& plan) {
   const Eigen::Vector2d spot = centre.head<2>();
   if (!inside_polygon(spot, plan.outline()) &&
       distance_to_outline(spot, plan.outline()) > kMountedWithin)
-    throw placed.reader.error("centre_m", "the landmark lies outside the room");
+    throw placed.reader->error("centre_m", "the landmark lies outside the room");
   for (const Obstacle& solid : plan.obstacles()) {
     if (centre.z() < solid.height_m && inside_polygon(spot, solid.polygon) &&
         distance_to_outline(spot, solid.polygon) > kMountedWithin)
-      throw placed.reader.error("centre_m", "the landmark lies inside an obstacle");
+      throw placed.reader->error("centre_m", "the landmark lies inside an obstacle");
   }
   const double reach = half_width(placed.landmark);
   if (centre.z() - reach < -kSlack)
-    throw placed.reader.error("centre_m", thing(placed.landmark) + " reaches below the floor");
+    throw placed.reader->error("centre_m", thing(placed.landmark) + " reaches below the floor");
   if (centre.z() + reach > plan.ceiling_m() + kSlack)
-    throw placed.reader.error(
+    throw placed.reader->error(
         "centre_m",
         thing(placed.landmark) + " reaches above the ceiling at " + metres(plan.ceiling_m()));
 }
@@ -80,15 +80,15 @@ void check_in_room(const PlacedLandmark& placed, const FloorPlan& plan) {
 void check_fits(const PlacedLandmark& placed, const Wall& face) {
   const double reach = half_width(placed.landmark);
   if (placed.landmark.centre_w().z() + reach > face.height_m + kSlack)
-    throw placed.reader.error("centre_m", thing(placed.landmark) +
-                                              " sticks out above its wall, which is " +
-                                              metres(face.height_m) + " high");
+    throw placed.reader->error("centre_m", thing(placed.landmark) +
+                                               " sticks out above its wall, which is " +
+                                               metres(face.height_m) + " high");
   const Eigen::Vector2d along = face.b - face.a;
   const double s = (placed.landmark.centre_w().head<2>() - face.a).dot(along.normalized());
   if (s < reach - kSlack || s > along.norm() - reach + kSlack)
-    throw placed.reader.error("centre_m", thing(placed.landmark) +
-                                              " sticks out at the side of its wall, which is " +
-                                              metres(along.norm()) + " long");
+    throw placed.reader->error("centre_m", thing(placed.landmark) +
+                                               " sticks out at the side of its wall, which is " +
+                                               metres(along.norm()) + " long");
 }
 
 /// Whether two landmarks on one side of one wall take the same place: discs and upright squares,
@@ -170,14 +170,14 @@ void check_mounting(const PlacedLandmark& placed, const FloorPlan& plan) {
   if (placed.free_standing) return;
   const Wall* face = mounting_face(placed, plan);
   if (face == nullptr)
-    throw placed.reader.error(
+    throw placed.reader->error(
         "centre_m",
         "the landmark is mounted on no wall: none that normal_deg is square to lies "
         "within " +
             metres(kMountedWithin) + " (write 'free_standing: true' for one that needs none)");
   if (!looks_into_the_open(placed, plan) || lies_behind(placed, *face))
-    throw placed.reader.error("normal_deg",
-                              "the landmark looks into the wall that it is mounted on");
+    throw placed.reader->error("normal_deg",
+                               "the landmark looks into the wall that it is mounted on");
   check_fits(placed, *face);
 }
 
@@ -185,14 +185,14 @@ void check_against_earlier(const std::vector<PlacedLandmark>& placed) {
   const PlacedLandmark& last = placed.back();
   for (auto other = placed.begin(); other + 1 != placed.end(); ++other) {
     if (other->landmark.id == last.landmark.id)
-      throw last.reader.error("id", "the id " + std::to_string(last.landmark.id) +
-                                        " occurs twice; it was given before at " +
-                                        to_string(other->reader.where("id")));
+      throw last.reader->error("id", "the id " + std::to_string(last.landmark.id) +
+                                         " occurs twice; it was given before at " +
+                                         to_string(other->reader->where("id")));
     if (const char* key = shared_code(last.landmark, other->landmark))
-      throw last.reader.error(
+      throw last.reader->error(
           key, "landmark " + std::to_string(other->landmark.id) + " shows the same code");
     if (overlap(last.landmark, other->landmark))
-      throw last.reader.error(
+      throw last.reader->error(
           "centre_m", "the landmark overlaps landmark " + std::to_string(other->landmark.id));
   }
 }

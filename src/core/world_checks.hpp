@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,7 @@ struct PlacedLandmark {
   Landmark landmark;
   double normal_yaw = 0.0;
   bool free_standing = false;
-  MapReader reader;
+  std::optional<MapReader> reader;  ///< of its map in the file
 };
 
 /// Each of these throws InputError, located by @p reader, unless the world makes sense.

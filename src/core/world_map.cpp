@@ -3,10 +3,14 @@
 #include "read_landmark.hpp"
 #include "world_checks.hpp"
 
+#include "vigia/core/params.hpp"
+
 namespace vigia {
 namespace {
 
-constexpr Range kHeight{0.05, 100.0};
+const Bounds kPlace{kCoordinate.low, kCoordinate.high};
+const Bounds kHeight{0.05, 100.0};
+const Bounds kWidth{0.5, 1000.0};
 
 std::vector<Eigen::Vector2d> rectangle(double width, double depth) {
   return {{0.0, 0.0}, {width, 0.0}, {width, depth}, {0.0, depth}};
@@ -14,72 +18,89 @@ std::vector<Eigen::Vector2d> rectangle(double width, double depth) {
 
 struct Room {
   std::vector<Eigen::Vector2d> outline;
-  double height_m = 0.0;
+  double height_m = 2.8;
 };
 
-Room read_room(MapReader reader) {
-  Room room;
-  room.height_m = reader.number("height_m", kHeight, 2.8);
-  if (reader.has("outline_m")) {
-    room.outline = reader.points2("outline_m", kCoordinate, 3);
-    check_polygon(room.outline, reader, "outline_m");
-  } else {
-    const double width = reader.number("width_m", {0.5, 1000.0});
-    room.outline = rectangle(width, reader.number("depth_m", {0.5, 1000.0}));
+void describe(ParamVisitor& v, Room& room) {
+  v.number("height_m", room.height_m, kHeight, "of the ceiling and of the walls round the room");
+  const bool by_outline = v.given("outline_m", [&] {
+    v.points("outline_m", room.outline, kPlace, 3, About("the room's corners in order").required());
+  });
+  if (by_outline) {
+    check_polygon(room.outline, *v.reader(), "outline_m");
+    return;
   }
-  reader.finish();
-  return room;
+  v.where(true, "no `outline_m`", [&] {
+    double width = 0.0;
+    double depth = 0.0;
+    v.number("width_m", width, kWidth, About("of a room with a corner at the origin").required());
+    v.number("depth_m", depth, kWidth, About("of a room with a corner at the origin").required());
+    room.outline = rectangle(width, depth);
+  });
 }
 
-Wall read_wall(MapReader reader, const Room& room) {
+void describe_wall(ParamVisitor& v, const Room& room, std::vector<Wall>& walls) {
   Wall wall;
-  wall.a = reader.vector2("from_m", kCoordinate);
-  wall.b = reader.vector2("to_m", kCoordinate);
-  wall.height_m = reader.number("height_m", kHeight, room.height_m);
-  reader.finish();
-  if ((wall.b - wall.a).norm() < kShortestWall)
-    throw reader.error("to_m", "the wall has no length: it ends where it begins");
-  check_below_ceiling(wall.height_m, room.height_m, reader);
-  check_segment_in_room(wall.a, wall.b, room.outline, reader, "to_m");
-  return wall;
+  wall.height_m = room.height_m;
+  v.vector("from_m", wall.a, kPlace, About("where it begins").required());
+  v.vector("to_m", wall.b, kPlace, About("where it ends").required());
+  v.number("height_m", wall.height_m, kHeight, About("at most the room's").otherwise("the room's"));
+  v.require((wall.b - wall.a).norm() >= kShortestWall, "to_m",
+            "the wall has no length: it ends where it begins");
+  if (const MapReader* reader = v.reader()) {
+    check_below_ceiling(wall.height_m, room.height_m, *reader);
+    check_segment_in_room(wall.a, wall.b, room.outline, *reader, "to_m");
+  }
+  walls.push_back(wall);
 }
 
-Obstacle read_obstacle(MapReader reader, const Room& room) {
-  Obstacle obstacle;
-  obstacle.polygon = reader.points2("polygon_m", kCoordinate, 3);
-  obstacle.height_m = reader.number("height_m", kHeight);
-  reader.finish();
+void check_obstacle(const Obstacle& obstacle, const Room& room, const MapReader& reader) {
   check_polygon(obstacle.polygon, reader, "polygon_m");
   check_below_ceiling(obstacle.height_m, room.height_m, reader);
   for (std::size_t i = 0; i < obstacle.polygon.size(); ++i)
     check_segment_in_room(obstacle.polygon[i], obstacle.polygon[(i + 1) % obstacle.polygon.size()],
                           room.outline, reader, "polygon_m");
-  return obstacle;
+}
+
+void describe_obstacle(ParamVisitor& v, const Room& room, std::vector<Obstacle>& obstacles) {
+  Obstacle obstacle;
+  v.points("polygon_m", obstacle.polygon, kPlace, 3, About("its corners in order").required());
+  v.number("height_m", obstacle.height_m, kHeight, About("at most the room's").required());
+  if (const MapReader* reader = v.reader()) check_obstacle(obstacle, room, *reader);
+  obstacles.push_back(obstacle);
 }
 
 }  // namespace
 
-WorldMap read_world_map(MapReader& reader) {
-  WorldMap world;
-  world.name = reader.text("name", "world");
-  const Room room = read_room(reader.map("room"));
+void describe(ParamVisitor& v, WorldMap& world) {
+  v.text("name", world.name, "of the world");
+  Room room;
+  v.map("room", room, "the building's outer walls");
   std::vector<Wall> walls;
-  for (const MapReader& wall : reader.maps("walls")) walls.push_back(read_wall(wall, room));
+  v.each("walls", "walls inside the room", [&] { describe_wall(v, room, walls); });
   std::vector<Obstacle> obstacles;
-  for (const MapReader& obstacle : reader.maps("obstacles"))
-    obstacles.push_back(read_obstacle(obstacle, room));
-  world.plan = FloorPlan(room.outline, room.height_m, std::move(walls), std::move(obstacles));
+  v.each("obstacles", "solids on the floor", [&] { describe_obstacle(v, room, obstacles); });
+  if (v.reader() != nullptr)
+    world.plan = FloorPlan(room.outline, room.height_m, std::move(walls), std::move(obstacles));
 
   std::vector<PlacedLandmark> placed;
-  for (const MapReader& landmark : reader.maps("landmarks")) {
-    placed.push_back(read_landmark(landmark));
+  v.each("landmarks", "what the robot looks at; no two overlap or show the same code", [&] {
+    describe(v, placed.emplace_back());
+    if (v.reader() == nullptr) return;
+    placed.back().reader = *v.reader();
     check_mounting(placed.back(), world.plan);
     check_against_earlier(placed);
-  }
+  });
   std::vector<Landmark> landmarks;
   landmarks.reserve(placed.size());
   for (const PlacedLandmark& entry : placed) landmarks.push_back(entry.landmark);
   world.landmarks = LandmarkMap(std::move(landmarks));
+}
+
+WorldMap read_world_map(MapReader& reader) {
+  WorldMap world;
+  ParamReader visitor(reader);
+  describe(visitor, world);
   return world;
 }
 

@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "vigia/core/config.hpp"
+#include "vigia/core/key_reference.hpp"
 
 namespace vigia::evaluation {
 namespace {
@@ -30,36 +31,90 @@ void reject_twins(const MapReader& reader, const std::string& key,
       throw reader.error(key, fmt::format("\"{}\" stands in the list twice", it->name));
 }
 
+/// What a campaign's file says.
+struct CampaignFile {
+  std::string name;
+  std::string mission;
+  std::uint64_t first_seed = 1;
+  int seeds = 100;
+  std::optional<std::vector<std::string>> policies;
+  std::optional<std::vector<std::string>> localizers;
+  std::optional<std::vector<std::string>> disturbances;
+  std::vector<Choice> variants;
+  std::vector<std::string> set;
+  std::optional<std::string> baseline;
+};
+
+/// Names end up in tables and CSV files.
+bool makes_a_name(const std::string& name) {
+  const auto plain = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
+  };
+  return !name.empty() && std::all_of(name.begin(), name.end(), plain);
+}
+
+void describe_list(ParamVisitor& v, const char* key, std::optional<std::vector<std::string>>& names,
+                   const About& about) {
+  v.given(key, [&] {
+    v.texts(key, names.emplace(), about.required());
+    v.require(!names->empty(), key, "the list is empty; leave the key out");
+  });
+}
+
+void describe_set(ParamVisitor& v, std::vector<std::string>& assignments, const About& about) {
+  v.given("set", [&] { v.texts("set", assignments, about.required()); });
+}
+
+void describe_variant(ParamVisitor& v, std::vector<Choice>& variants) {
+  Choice variant;
+  v.text("name", variant.name, About("of letters, digits and _ - .").required());
+  v.require(makes_a_name(variant.name), "name",
+            fmt::format("found \"{}\"; letters, digits and _ - . make a name", variant.name));
+  describe_set(v, variant.overrides, "`\"key.path=value\"` of this variant");
+  variants.push_back(variant);
+}
+
+void describe(ParamVisitor& v, CampaignFile& file) {
+  v.folder_name("name", file.name, About("its folder is named after it").required());
+  v.text("mission", file.mission, About("a file, relative to this one").required());
+  v.map("seeds", "the same for every arm", [&] {
+    v.integer("first", file.first_seed, {0, 1e9}, "seed");
+    v.integer("count", file.seeds, {2, 1e6}, "of seeds");
+  });
+  describe_set(v, file.set,
+               "`\"key.path=value\"` for every arm, before the lists; `--set` comes last");
+  const char* usual = "the mission's";
+  describe_list(v, "policies", file.policies, About("values of `planner.policy`").otherwise(usual));
+  describe_list(v, "localizers", file.localizers,
+                About("values of `localization.primary`").otherwise(usual));
+  describe_list(
+      v, "disturbances", file.disturbances,
+      About("keys below the mission's `disturbances`; each is set to `realistic` with all "
+            "others off. `none`: all off; `all`: all but kidnapping")
+          .otherwise(usual));
+  v.each("variants", "each an arm, or as many as the lists make",
+         [&] { describe_variant(v, file.variants); });
+  v.given("baseline", [&] {
+    v.text("baseline", file.baseline.emplace(),
+           About("name of the arm from which differences count")
+               .otherwise("the first arm")
+               .required());
+  });
+}
+
 /// A list of names, each of which becomes assignments by @p overrides.
 template <typename Overrides>
-Dimension read_names(MapReader& reader, const std::string& key, Overrides overrides) {
+Dimension dimension_of(const MapReader& reader, const std::string& key,
+                       const std::optional<std::vector<std::string>>& names, Overrides overrides) {
   Dimension dimension{reader.where(key), {}};
-  if (!reader.has(key)) return dimension;
-  for (const auto& name : reader.texts(key)) dimension.choices.push_back({name, overrides(name)});
-  if (dimension.choices.empty()) throw reader.error(key, "the list is empty; leave the key out");
+  if (!names) return dimension;
+  for (const auto& name : *names) dimension.choices.push_back({name, overrides(name)});
   reject_twins(reader, key, dimension.choices);
   return dimension;
 }
 
-/// Names end up in tables and CSV files.
-void check_name(const MapReader& variant, const std::string& name) {
-  const auto plain = [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
-  };
-  if (name.empty() || !std::all_of(name.begin(), name.end(), plain))
-    throw variant.error("name",
-                        fmt::format("found \"{}\"; letters, digits and _ - . make a name", name));
-}
-
-Dimension read_variants(MapReader& reader) {
-  Dimension dimension{reader.where("variants"), {}};
-  for (MapReader& variant : reader.maps("variants")) {
-    const std::string name = variant.text("name");
-    check_name(variant, name);
-    dimension.choices.push_back(
-        {name, variant.has("set") ? variant.texts("set") : std::vector<std::string>{}});
-    variant.finish();
-  }
+Dimension variants_of(const MapReader& reader, const std::vector<Choice>& variants) {
+  Dimension dimension{reader.where("variants"), variants};
   reject_twins(reader, "variants", dimension.choices);
   return dimension;
 }
@@ -106,46 +161,50 @@ Arm make_arm(const std::vector<Dimension>& dimensions, const std::vector<std::si
   return arm;
 }
 
-std::size_t find_baseline(MapReader& reader, const std::vector<Arm>& arms) {
-  if (!reader.has("baseline")) return 0;
-  const std::string name = reader.text("baseline");
+std::size_t find_baseline(const MapReader& reader, const std::optional<std::string>& baseline,
+                          const std::vector<Arm>& arms) {
+  if (!baseline) return 0;
   std::vector<std::string> names;
   for (std::size_t i = 0; i < arms.size(); ++i) {
-    if (arms[i].name == name) return i;
+    if (arms[i].name == *baseline) return i;
     names.push_back(arms[i].name);
   }
-  throw reader.error("baseline", fmt::format("found \"{}\", must be the name of an arm: {}", name,
-                                             fmt::join(names, ", ")));
+  throw reader.error("baseline", fmt::format("found \"{}\", must be the name of an arm: {}",
+                                             *baseline, fmt::join(names, ", ")));
+}
+
+std::vector<Dimension> dimensions_of(const MapReader& reader, const CampaignFile& file) {
+  const auto sets = [](const std::string& key) {
+    return [key](const std::string& name) { return std::vector<std::string>{key + "=" + name}; };
+  };
+  return {dimension_of(reader, "policies", file.policies, sets("planner.policy")),
+          dimension_of(reader, "localizers", file.localizers, sets("localization.primary")),
+          dimension_of(reader, "disturbances", file.disturbances, disturbance_overrides),
+          variants_of(reader, file.variants)};
 }
 
 }  // namespace
 
+std::vector<KeyRow> campaign_keys() {
+  return key_reference<CampaignFile>("campaign.");
+}
+
 Campaign read_campaign(const std::filesystem::path& file,
                        const std::vector<std::string>& overrides) {
   MapReader reader(load_config(file), "campaign");
+  CampaignFile said;
+  read_params(reader, said);
   Campaign campaign;
-  campaign.name = reader.folder_name("name");
-  const auto mission = file.parent_path() / reader.text("mission");
-  MapReader seeds = reader.map("seeds");
-  campaign.first_seed = static_cast<std::uint64_t>(seeds.integer("first", {0, 1e9}, 1));
-  campaign.seeds = static_cast<int>(seeds.integer("count", {2, 1e6}, campaign.seeds));
-  seeds.finish();
-
-  const auto sets = [](const std::string& key) {
-    return [key](const std::string& name) { return std::vector<std::string>{key + "=" + name}; };
-  };
-  const auto all = reader.has("set") ? reader.texts("set") : std::vector<std::string>{};
-  const std::vector<Dimension> dimensions{
-      read_names(reader, "policies", sets("planner.policy")),
-      read_names(reader, "localizers", sets("localization.primary")),
-      read_names(reader, "disturbances", disturbance_overrides), read_variants(reader)};
-
+  campaign.name = said.name;
+  campaign.first_seed = said.first_seed;
+  campaign.seeds = said.seeds;
+  const auto dimensions = dimensions_of(reader, said);
   std::vector<std::size_t> picks(dimensions.size(), 0);
   do {
-    Arm arm = make_arm(dimensions, picks, all);
+    Arm arm = make_arm(dimensions, picks, said.set);
     arm.overrides.insert(arm.overrides.end(), overrides.begin(), overrides.end());
     try {
-      arm.setup = mission::load_mission(mission, arm.overrides);
+      arm.setup = mission::load_mission(file.parent_path() / said.mission, arm.overrides);
     } catch (const InputError& error) {
       const Dimension* source = origin(error.what(), dimensions);
       if (source == nullptr) throw;
@@ -154,8 +213,7 @@ Campaign read_campaign(const std::filesystem::path& file,
     if (arm.name.empty()) arm.name = arm.setup.look.policy;
     campaign.arms.push_back(std::move(arm));
   } while (advance(picks, dimensions));
-  campaign.baseline = find_baseline(reader, campaign.arms);
-  reader.finish();
+  campaign.baseline = find_baseline(reader, said.baseline, campaign.arms);
   return campaign;
 }
 

@@ -36,6 +36,10 @@ Json metrics_json(const std::vector<Estimate>& estimates) {
   return json;
 }
 
+int recoveries_of(const LossScore& loss) {
+  return loss.right_recoveries + loss.wrong_recoveries;
+}
+
 Json localizer_json_of(const LocalizerStatistics& l) {
   return {{"position_final_m", json_of(l.position_final)},
           {"heading_final_rad", json_of(l.heading_final)},
@@ -46,7 +50,10 @@ Json localizer_json_of(const LocalizerStatistics& l) {
           {"nees_per_dof", l.nees_per_dof},
           {"anees_in_band", l.anees_in_band},
           {"anees_looks", l.anees.size()},
-          {"anees_per_dof", l.anees}};
+          {"anees_per_dof", l.anees},
+          {"loss", loss_json(l.loss)},
+          {"right_recoveries",
+           share_json(l.loss.right_recoveries, recoveries_of(l.loss), l.right_recoveries_share)}};
 }
 
 Json arm_json(const Arm& arm, const ArmStatistics& statistics) {
@@ -82,11 +89,17 @@ std::string found_again(const LossStatistics& losses) {
   return losses.episodes == 0 ? "–" : share(losses.ended, losses.episodes, losses.ended_share);
 }
 
+std::string right_recoveries(const LocalizerStatistics& l) {
+  const int all = recoveries_of(l.loss);
+  return all == 0 ? "–" : share(l.loss.right_recoveries, all, l.right_recoveries_share);
+}
+
 TextRows arm_rows(const Campaign& campaign, const std::vector<ArmStatistics>& statistics) {
   TextRows rows{{"arm", "arrived", "collided"}};
   for (const auto& metric : campaign_metrics()) rows.front().push_back(metric.label);
-  for (const char* label : {"PCRLB ratio", "NEES/dof", "ANEES in band", "times lost",
-                            "said before 50 cm", "found again"})
+  for (const char* label :
+       {"PCRLB ratio", "NEES/dof", "ANEES in band", "times lost", "said before 50 cm",
+        "found again", "false alarms /km", "misses", "recoveries right", "Brier"})
     rows.front().emplace_back(label);
   for (std::size_t i = 0; i < statistics.size(); ++i) {
     const SeedStatistics& s = statistics[i].over_seeds;
@@ -102,6 +115,10 @@ TextRows arm_rows(const Campaign& campaign, const std::vector<ArmStatistics>& st
     row.push_back(std::to_string(s.losses.episodes));
     row.push_back(said_in_time(s.losses));
     row.push_back(found_again(s.losses));
+    row.push_back(fmt::format("{} ({:.1f})", l.loss.false_alarms, l.loss.false_alarms_per_km()));
+    row.push_back(std::to_string(l.loss.misses));
+    row.push_back(right_recoveries(l));
+    row.push_back(fmt::format("{:.4f}", l.loss.brier));
     rows.push_back(row);
   }
   return rows;
@@ -156,6 +173,15 @@ std::string localizer_text(const std::string& name, const LocalizerStatistics& l
     text +=
         fmt::format("; ANEES in its 95 % band at {:.0f} % of {} looks:\n                  {:.2f}",
                     100 * l.anees_in_band, l.anees.size(), fmt::join(l.anees, " "));
+  const LossScore& loss = l.loss;
+  text += fmt::format(
+      "\n  lost and found  false alarms {} ({:.1f} per km), misses {} ({} over 50 cm), said {} "
+      "after "
+      "{:.1f} s (at most {:.1f}),\n                  recoveries right {}, ambiguous {:.1f} s, "
+      "Brier {:.4f}",
+      loss.false_alarms, loss.false_alarms_per_km(), loss.misses, loss.misses_over_half_metre,
+      loss.said, loss.delay_mean_s, loss.delay_max_s, right_recoveries(l), loss.ambiguous_s,
+      loss.brier);
   return text + "\n";
 }
 

@@ -9,6 +9,7 @@ namespace vigia::evaluation {
 using Json = nlohmann::ordered_json;
 
 /// The parts of summary.json.
+Json loss_json(const LossScore& score);
 Json localizer_json(const LocalizerScore& score);
 Json perception_json(const PerceptionScore& score);
 Json recovery_json(const RecoveryScore& score);

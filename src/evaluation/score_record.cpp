@@ -20,6 +20,29 @@ std::optional<double> seconds_from(const Json& json) {
   return json.is_null() ? std::nullopt : std::optional(json.get<double>());
 }
 
+LossScore loss_from(const Json& json) {
+  LossScore s;
+  json.at("false_alarms").get_to(s.false_alarms);
+  json.at("driven_m").get_to(s.driven_m);
+  json.at("misses").get_to(s.misses);
+  json.at("misses_over_half_metre").get_to(s.misses_over_half_metre);
+  json.at("unsaid_s").get_to(s.unsaid_s);
+  json.at("said").get_to(s.said);
+  json.at("delay_mean_s").get_to(s.delay_mean_s);
+  json.at("delay_max_s").get_to(s.delay_max_s);
+  json.at("right_recoveries").get_to(s.right_recoveries);
+  json.at("wrong_recoveries").get_to(s.wrong_recoveries);
+  json.at("ambiguous_s").get_to(s.ambiguous_s);
+  json.at("brier").get_to(s.brier);
+  for (const auto& b : json.at("calibration")) {
+    CalibrationBin& bin = s.calibration.at(b.at("bin").get<std::size_t>());
+    b.at("mean_probability").get_to(bin.mean_probability);
+    b.at("ticks").get_to(bin.ticks);
+    b.at("astray").get_to(bin.astray);
+  }
+  return s;
+}
+
 LocalizerScore localizer_from(const Json& json) {
   LocalizerScore s;
   json.at("position_final_m").get_to(s.position_final_m);
@@ -38,6 +61,7 @@ LocalizerScore localizer_from(const Json& json) {
   for (const auto& e : json.at("lost"))
     s.lost.push_back({seconds_from(e.at("said_s")), seconds_from(e.at("passed_half_metre_s")),
                       seconds_from(e.at("ended_s"))});
+  s.loss = loss_from(json.at("loss"));
   for (const auto& l : json.at("looks"))
     s.looks.push_back({l.at(0).get<LookId>(), l.at(1), l.at(2), l.at(3)});
   return s;

@@ -30,6 +30,11 @@ std::vector<std::vector<double>> look_nees(const std::vector<DriveScore>& scores
   return nees;
 }
 
+/// Of a share of episodes; nothing is known of it where there were none.
+Interval share_of(int count, int episodes) {
+  return episodes > 0 ? clopper_pearson(count, episodes) : Interval{0.0, 1.0};
+}
+
 LocalizerStatistics localizer_statistics(const std::vector<DriveScore>& scores,
                                          const std::string& name) {
   const auto mean = [&](double LocalizerScore::*part) {
@@ -54,6 +59,13 @@ LocalizerStatistics localizer_statistics(const std::vector<DriveScore>& scores,
   statistics.bound_rms = std::sqrt(bound_sum / static_cast<double>(scores.size()));
   statistics.pcrlb_ratio = evaluation::pcrlb_ratio(errors, bounds, kBootstrapSeed);
 
+  std::vector<LossScore> losses;
+  for (const auto& score : scores) losses.push_back(score.localizers.at(name).loss);
+  statistics.loss = combined(losses);
+  statistics.right_recoveries_share =
+      share_of(statistics.loss.right_recoveries,
+               statistics.loss.right_recoveries + statistics.loss.wrong_recoveries);
+
   const auto nees = look_nees(scores, name);
   if (!nees.front().empty()) {
     const Anees over_looks = anees(nees, 3);
@@ -61,11 +73,6 @@ LocalizerStatistics localizer_statistics(const std::vector<DriveScore>& scores,
     statistics.anees_in_band = over_looks.inside_band;
   }
   return statistics;
-}
-
-/// Of a share of episodes; nothing is known of it where there were none.
-Interval share_of(int count, int episodes) {
-  return episodes > 0 ? clopper_pearson(count, episodes) : Interval{0.0, 1.0};
 }
 
 LossStatistics loss_statistics(const std::vector<DriveScore>& scores) {

@@ -14,7 +14,37 @@ Json episode_json(const LostEpisode& episode) {
           {"announced", episode.announced()}};
 }
 
+Json calibration_json(const LossScore& s) {
+  Json bins = Json::array();
+  for (std::size_t i = 0; i < s.calibration.size(); ++i) {
+    const CalibrationBin& bin = s.calibration[i];
+    if (bin.ticks == 0) continue;
+    bins.push_back({{"bin", i},
+                    {"mean_probability", bin.mean_probability},
+                    {"ticks", bin.ticks},
+                    {"astray", bin.astray}});
+  }
+  return bins;
+}
+
 }  // namespace
+
+Json loss_json(const LossScore& s) {
+  return {{"false_alarms", s.false_alarms},
+          {"driven_m", s.driven_m},
+          {"false_alarms_per_km", s.false_alarms_per_km()},
+          {"misses", s.misses},
+          {"misses_over_half_metre", s.misses_over_half_metre},
+          {"unsaid_s", s.unsaid_s},
+          {"said", s.said},
+          {"delay_mean_s", s.delay_mean_s},
+          {"delay_max_s", s.delay_max_s},
+          {"right_recoveries", s.right_recoveries},
+          {"wrong_recoveries", s.wrong_recoveries},
+          {"ambiguous_s", s.ambiguous_s},
+          {"brier", s.brier},
+          {"calibration", calibration_json(s)}};
+}
 
 Json localizer_json(const LocalizerScore& s) {
   Json json{{"position_final_m", s.position_final_m},
@@ -30,7 +60,8 @@ Json localizer_json(const LocalizerScore& s) {
             {"lost_s", s.lost_s},
             {"pcrlb_position_final_m", s.pcrlb_position_final_m},
             {"pcrlb_heading_final_rad", s.pcrlb_heading_final_rad},
-            {"lost", Json::array()}};
+            {"lost", Json::array()},
+            {"loss", loss_json(s.loss)}};
   for (const auto& episode : s.lost) json["lost"].push_back(episode_json(episode));
   return json;
 }

@@ -23,9 +23,16 @@ std::vector<std::size_t> column_widths(const TextRows& rows) {
   return widths;
 }
 
+/// A bar would end the cell.
+std::string without_bars(const std::string& cell) {
+  std::string text;
+  for (const char c : cell) text += c == '|' ? std::string("\\|") : std::string(1, c);
+  return text;
+}
+
 }  // namespace
 
-std::string aligned_table(const TextRows& rows) {
+std::string aligned_table(const TextRows& rows, Cells cells) {
   if (rows.empty()) return "";
   const auto widths = column_widths(rows);
   std::string text;
@@ -33,10 +40,11 @@ std::string aligned_table(const TextRows& rows) {
     for (std::size_t i = 0; i < widths.size(); ++i) {
       const std::string& cell = rows[r][i];
       const std::string blanks(widths[i] - width_of(cell), ' ');
-      if (i == 0)
-        text += cell + (widths.size() > 1 ? blanks : "");
-      else
-        text.append("  ").append(blanks).append(cell);
+      const bool to_the_left = i == 0 || cells == Cells::words;
+      if (i > 0) text += "  ";
+      if (!to_the_left) text += blanks;
+      text += cell;
+      if (to_the_left && i + 1 < widths.size()) text += blanks;
     }
     text += '\n';
     if (r > 0) continue;
@@ -47,15 +55,16 @@ std::string aligned_table(const TextRows& rows) {
   return text;
 }
 
-std::string markdown_table(const TextRows& rows) {
+std::string markdown_table(const TextRows& rows, Cells cells) {
   std::string text;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     text += '|';
-    for (const auto& cell : rows[r]) text += ' ' + cell + " |";
+    for (const auto& cell : rows[r]) text += ' ' + without_bars(cell) + " |";
     text += '\n';
     if (r > 0) continue;
     text += '|';
-    for (std::size_t i = 0; i < rows[r].size(); ++i) text += i == 0 ? "---|" : "---:|";
+    for (std::size_t i = 0; i < rows[r].size(); ++i)
+      text += i == 0 || cells == Cells::words ? "---|" : "---:|";
     text += '\n';
   }
   return text;

@@ -1,78 +1,69 @@
 #include "vigia/localization/ekf.hpp"
 
-#include "association.hpp"
 #include "look_smoother.hpp"
-#include "points_gate.hpp"
+#include "lost_probability.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <utility>
 
+#include "vigia/core/overloaded.hpp"
 #include "vigia/localization/chi_square.hpp"
 
 namespace vigia::localization {
 namespace {
 
-constexpr int kDof = 3;        // of (u, v, s)
-constexpr int kPointsDof = 5;  // at most, of what points say about the state
-/// σ of ln √(ab) that teaches nothing: a factor of e^1000.
-constexpr double kUnmeasuredSize = 1e3;
+constexpr int kTypicalDof = 3;  // of an image: a disc's
+constexpr int kMaxDof = 5;      // of an image: what points say of the state
 /// A look without an image for so long (s) is not linearised anew any more.
 constexpr double kLookPause = 1.0;
 /// Of a look of more events the older half is not linearised anew any more.
 constexpr std::size_t kLookEvents = 250;
 
+MeasurementParams measurement_params(const EkfParams& params) {
+  return {params.sensor,          params.gate_probability, params.ambiguity_ratio,
+          params.centre_floor_px, params.size_floor,       params.use_size};
+}
+
 double fraction_at(const OdometryIncrement& u, Stamp stamp) {
   return (stamp - u.from).seconds() / (u.to - u.from).seconds();
 }
 
-/// What is left of a measurement's covariance when the size is not to teach anything.
-Eigen::Matrix3d without_size(Eigen::Matrix3d R) {
-  R.row(2).setZero();
-  R.col(2).setZero();
-  R(2, 2) = kUnmeasuredSize * kUnmeasuredSize;
-  return R;
+/// The shot of an image; nullptr for an increment.
+const Shot* shot_of(const LookInput& input) {
+  return std::visit(Overloaded{[](const Motion&) -> const Shot* { return nullptr; },
+                               [](const auto& match) { return &match.shot; }},
+                    input);
 }
 
-bool is_usable(const EllipseObservation& observation) {
-  const Ellipse& e = observation.ellipse;
-  return e.a > 0.0 && e.b > 0.0 && measured_disc(observation).allFinite() &&
-         measured_disc_covariance(observation).allFinite();
-}
-
-bool is_usable(const PointsObservation& observation) {
-  return !observation.points.empty();
-}
-
-bool is_image(const EkfInput& input) {
-  return shot_of(input) != nullptr;
+bool is_image(const LookInput& input) {
+  return !std::holds_alternative<Motion>(input);
 }
 
 }  // namespace
 
 EkfLocalizer::EkfLocalizer(LandmarkMap map, const RigOnGround& on_ground, const EkfParams& params,
                            std::optional<FloorPlan> plan)
-    : map_(std::move(map)),
-      on_ground_(on_ground),
-      params_(params),
-      plan_(std::move(plan)),
-      gate_(chi_square_quantile(params.gate_probability, kDof)),
-      nis_limits_(static_cast<std::size_t>(kPointsDof * params.nis_looks) + 1),
+    : params_(params),
+      model_(std::move(map), on_ground, measurement_params(params), std::move(plan)),
+      nis_limits_(static_cast<std::size_t>(kMaxDof * params.nis_looks) + 1),
       mean_speed_(params.odometry) {
   for (std::size_t dof = 1; dof < nis_limits_.size(); ++dof)
     nis_limits_[dof] = chi_square_quantile(1.0 - params.nis_probability, static_cast<double>(dof));
-  reset(Stamp{}, Prior{});
+  reset(Stamp{}, std::nullopt);
 }
 
-void EkfLocalizer::reset(Stamp stamp, const Prior& prior) {
-  base_ = initial_state(stamp, prior, params_.sensor);
+void EkfLocalizer::reset(Stamp stamp, const std::optional<Prior>& prior) {
+  base_ = initial_state(stamp, prior.value_or(anywhere()), params_.sensor);
+  has_prior_ = prior.has_value();
   events_.clear();
   mean_speed_.reset();
   horizon_ = stamp;
   rejections_ = 0;
   rejected_looks_.clear();
   first_of_looks_.clear();
+  innovation_evidence_ = 0.0;
   said_lost_ = false;
   refresh_belief();
 }
@@ -84,9 +75,9 @@ void EkfLocalizer::lose() {
 
 void EkfLocalizer::predict(const OdometryIncrement& increment) {
   assert(std::isfinite(increment.rot1 + increment.trans + increment.rot2));
-  const std::vector<EkfInput> ahead = drop_extrapolated();
-  append(Motion{increment, mean_speed_.even(increment)});
-  for (const EkfInput& fix : ahead) {
+  const std::vector<LookInput> ahead = drop_extrapolated();
+  append(Motion{increment, mean_speed_.at_mean_speed(increment)});
+  for (const LookInput& fix : ahead) {
     const std::vector<Event> later = roll_back(shot_of(fix)->stamp);
     append(fix);
     for (const Event& event : later) append(event.input, event.extrapolated);
@@ -98,59 +89,32 @@ void EkfLocalizer::predict(const OdometryIncrement& increment) {
 UpdateResult EkfLocalizer::update(const Observation& observation) {
   const bool usable = std::visit([](const auto& seen) { return is_usable(seen); }, observation);
   UpdateResult result{UpdateStatus::degenerate, std::nullopt, 0.0, 0};
-  if (usable) result = take_in(observation);
+  if (!has_prior_)
+    result.status = UpdateStatus::no_prior;
+  else if (usable)
+    result = process(observation);
   ++counts_[static_cast<std::size_t>(result.status)];
   refresh_belief();
   return result;
 }
 
-UpdateResult EkfLocalizer::take_in(const Observation& observation) {
+UpdateResult EkfLocalizer::process(const Observation& observation) {
   const Shot& shot = vigia::shot_of(observation);
   if (shot.stamp < horizon_) return {UpdateStatus::too_late, std::nullopt, 0.0, 0};
   const std::vector<Event> later = roll_back(shot.stamp);
   const bool first_of_look = state().look != shot.look;
-  const EkfState at = with_look(state(), shot.look);
-  const Match found = std::visit([&](const auto& seen) { return match(seen, at); }, observation);
-  if (found.fix)
-    append(*found.fix);
+  const LookState at = with_look(state(), shot);
+  Association found = model_.associate(observation, at);
+  if (found.match)
+    append(std::visit([](auto& match) { return LookInput(std::move(match)); }, *found.match));
   else if (!events_.empty() && events_.back().extrapolated)
     events_.pop_back();
   for (const Event& event : later) append(event.input, event.extrapolated);
-  watch_innovations(found.result, shot.look, first_of_look);
+  monitor_innovations(found.result, shot.look, first_of_look);
   return found.result;
 }
 
-EkfLocalizer::Match EkfLocalizer::match(const EllipseObservation& observation,
-                                        const EkfState& at) const {
-  const AssociationModel model{map_, plan_ ? &*plan_ : nullptr, on_ground_, params_.sensor, gate_};
-  const Eigen::Vector3d z = measured_disc(observation);
-  const Eigen::Matrix3d R = measurement_covariance(observation);
-  const Association found = associate(model, at, observation, z, R);
-  if (!found.any_image) return {{UpdateStatus::degenerate, std::nullopt, 0.0, 0}, std::nullopt};
-  if (found.inside_gate.empty())
-    return {{UpdateStatus::gated, std::nullopt, found.best_nis, kDof}, std::nullopt};
-  const Candidate& best = found.inside_gate.front();
-  if (found.inside_gate.size() > 1 &&
-      found.inside_gate[1].cost - best.cost < 2.0 * std::log(params_.ambiguity_ratio))
-    return {{UpdateStatus::ambiguous, std::nullopt, best.nis, kDof}, std::nullopt};
-  return {{UpdateStatus::fused, best.landmark->id, best.nis, kDof},
-          DiscFix{observation.shot, *best.landmark, z, params_.use_size ? R : without_size(R)}};
-}
-
-EkfLocalizer::Match EkfLocalizer::match(const PointsObservation& observation,
-                                        const EkfState& at) const {
-  const Landmark* landmark = map_.find(observation.landmark);
-  if (landmark == nullptr) return {{UpdateStatus::gated, std::nullopt, 0.0, 0}, std::nullopt};
-  PointsFix fix{observation.shot, *landmark,
-                seen_points(*landmark, observation, params_.centre_floor_px)};
-  if (fix.points.empty()) return {{UpdateStatus::degenerate, std::nullopt, 0.0, 0}, std::nullopt};
-  const UpdateResult result =
-      gate_points({on_ground_, params_.sensor, params_.gate_probability}, at, fix);
-  if (result.status != UpdateStatus::fused) return {result, std::nullopt};
-  return {result, std::move(fix)};
-}
-
-void EkfLocalizer::append(const EkfInput& input, bool extrapolated) {
+void EkfLocalizer::append(const LookInput& input, bool extrapolated) {
   Event event{input, extrapolated, state(), events_.empty() ? Window{} : events_.back().window};
   if (const auto* motion = std::get_if<Motion>(&input))
     move_by(*motion, event);
@@ -169,7 +133,7 @@ void EkfLocalizer::move_by(const Motion& motion, Event& event) const {
 
 void EkfLocalizer::fuse(const Shot& shot, Event& event) const {
   Window& window = event.window;
-  event.after = with_look(event.after, shot.look);
+  event.after = with_look(event.after, shot);
   if (window.events == 0 || window.start.look != shot.look) {
     window = {};
     window.start = event.after;
@@ -178,8 +142,7 @@ void EkfLocalizer::fuse(const Shot& shot, Event& event) const {
   ++window.images;
   window.last_image = shot.stamp;
   auto smoothed = smooth_look(window.start, inputs_of_look(event), guess_of_look(event),
-                              {on_ground_, params_.sensor, params_.odometry}, params_.iterations,
-                              params_.converged);
+                              {model_, params_.odometry}, params_.iterations, params_.converged);
   if (!smoothed) {
     window = {};
     return;
@@ -197,11 +160,11 @@ void EkfLocalizer::fuse(const Shot& shot, Event& event) const {
   }
 }
 
-std::vector<const EkfInput*> EkfLocalizer::inputs_of_look(const Event& event) const {
+std::vector<const LookInput*> EkfLocalizer::inputs_of_look(const Event& event) const {
   const Window& window = event.window;
   int stride = 1;
   while (window.images > stride * params_.look_images) stride *= 2;
-  std::vector<const EkfInput*> inputs;
+  std::vector<const LookInput*> inputs;
   int image = 0;
   for (auto it = events_.end() - static_cast<std::ptrdiff_t>(window.events - 1);
        it != events_.end(); ++it) {
@@ -221,15 +184,9 @@ std::vector<Vector6> EkfLocalizer::guess_of_look(const Event& event) const {
   return guess;
 }
 
-EkfState EkfLocalizer::with_look(const EkfState& state, LookId look) const {
-  return state.look == look ? state : begin_look(state, look, params_.sensor);
-}
-
-Eigen::Matrix3d EkfLocalizer::measurement_covariance(const EllipseObservation& observation) const {
-  const Eigen::Vector3d floor(params_.centre_floor_px, params_.centre_floor_px, params_.size_floor);
-  Eigen::Matrix3d R = measured_disc_covariance(observation);
-  R.diagonal() += floor.cwiseAbs2();
-  return R;
+LookState EkfLocalizer::with_look(const LookState& state, const Shot& shot) const {
+  const bool same = state.look == shot.look || !model_.has_look_biases(shot.camera);
+  return same ? state : begin_look(state, shot.look, params_.sensor);
 }
 
 std::vector<EkfLocalizer::Event> EkfLocalizer::roll_back(Stamp stamp) {
@@ -259,7 +216,7 @@ std::vector<EkfLocalizer::Event> EkfLocalizer::roll_back(Stamp stamp) {
 
 void EkfLocalizer::extrapolate(Stamp stamp) {
   Motion motion;
-  motion.increment = motion.even = {state().stamp, stamp, 0.0, 0.0, 0.0};
+  motion.increment = motion.mean_speed = {state().stamp, stamp, 0.0, 0.0, 0.0};
   const auto last = std::find_if(events_.rbegin(), events_.rend(), [](const Event& event) {
     return std::holds_alternative<Motion>(event.input);
   });
@@ -274,10 +231,10 @@ void EkfLocalizer::extrapolate(Stamp stamp) {
   append(motion, true);
 }
 
-std::vector<EkfInput> EkfLocalizer::drop_extrapolated() {
+std::vector<LookInput> EkfLocalizer::drop_extrapolated() {
   const auto first = std::find_if(events_.begin(), events_.end(),
                                   [](const Event& event) { return event.extrapolated; });
-  std::vector<EkfInput> fixes;
+  std::vector<LookInput> fixes;
   for (auto it = first; it != events_.end(); ++it)
     if (is_image(it->input)) fixes.push_back(it->input);
   events_.erase(first, events_.end());
@@ -301,7 +258,8 @@ void EkfLocalizer::forget_old() {
   }
 }
 
-void EkfLocalizer::watch_innovations(const UpdateResult& result, LookId look, bool first_of_look) {
+void EkfLocalizer::monitor_innovations(const UpdateResult& result, LookId look,
+                                       bool first_of_look) {
   if (result.status == UpdateStatus::gated || result.status == UpdateStatus::degenerate) {
     ++rejections_;
     rejected_looks_.insert(look);
@@ -315,27 +273,36 @@ void EkfLocalizer::watch_innovations(const UpdateResult& result, LookId look, bo
   }
   const bool rejected = rejections_ >= params_.lost_rejections &&
                         rejected_looks_.size() >= static_cast<std::size_t>(params_.lost_looks);
-  said_lost_ = said_lost_ || rejected || innovations_are_unlikely();
+  const auto [nis, dof] = innovations_of_looks();
+  if (result.status == UpdateStatus::fused && first_of_look)
+    innovation_evidence_ = tail_evidence(chi_square_tail(nis, dof), params_.nis_probability);
+  said_lost_ = said_lost_ || rejected || nis > nis_limits_[static_cast<std::size_t>(dof)];
 }
 
-bool EkfLocalizer::innovations_are_unlikely() const {
+std::pair<double, int> EkfLocalizer::innovations_of_looks() const {
   double sum = 0.0;
   // Looks to come count as discs.
-  int dof = kDof * (params_.nis_looks - static_cast<int>(first_of_looks_.size()));
+  int dof = kTypicalDof * (params_.nis_looks - static_cast<int>(first_of_looks_.size()));
   for (const UpdateResult& first : first_of_looks_) {
     sum += first.nis;
     dof += first.dof;
   }
-  return sum > nis_limits_[static_cast<std::size_t>(dof)];
+  return {sum, dof};
 }
 
 void EkfLocalizer::refresh_belief() {
-  const EkfState& now = state();
+  const LookState& now = state();
   belief_.stamp = now.stamp;
   belief_.pose = now.pose();
   belief_.covariance = now.pose_covariance();
-  const bool lost = said_lost_ || belief_.position_sigma() > params_.lost_sigma_m;
+  const double sigma_m = belief_.position_sigma();
+  const bool says_lost = said_lost_ || !has_prior_;
+  const bool lost = says_lost || sigma_m > params_.lost_sigma_m;
   belief_.status = lost ? BeliefStatus::lost : BeliefStatus::tracking;
+  const double rejected = rejection_probability(rejections_, params_.lost_rejections);
+  belief_.lost_probability = says_lost ? kSaidLost
+                                       : either(probability_of_half_a_metre(sigma_m),
+                                                either(rejected, innovation_evidence_));
 }
 
 }  // namespace vigia::localization

@@ -16,6 +16,8 @@ std::string_view to_string(UpdateStatus status) {
       return "too_late";
     case UpdateStatus::unsupported:
       return "unsupported";
+    case UpdateStatus::no_prior:
+      return "no_prior";
   }
   return "";
 }

@@ -1,21 +1,21 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
-#include "vigia/localization/ekf_state.hpp"
+#include "vigia/localization/look_input.hpp"
 
 namespace vigia::localization {
 
 /// What the inputs of a look are linearised with.
 struct LookModel {
-  const RigOnGround& on_ground;
-  const SensorNoise& sensor;
+  const MeasurementModel& measurement;
   const OdometryNoise& odometry;
 };
 
 /// The most likely trajectory of a look and the filter linearised about it.
 struct SmoothedLook {
-  std::vector<EkfState> filtered;   ///< after each input; the last is the estimate
+  std::vector<LookState> filtered;  ///< after each input; the last is the estimate
   std::vector<Vector6> trajectory;  ///< the smoothed mean before each input
 };
 
@@ -33,8 +33,8 @@ struct SmoothedLook {
 /// @p guess is the first trajectory: the mean before each input. At most @p iterations passes,
 /// until one moves the trajectory by less than @p converged (m, rad).
 /// Nothing comes back when a landmark has no image from the trajectory.
-std::optional<SmoothedLook> smooth_look(const EkfState& start,
-                                        const std::vector<const EkfInput*>& inputs,
+std::optional<SmoothedLook> smooth_look(const LookState& start,
+                                        const std::vector<const LookInput*>& inputs,
                                         std::vector<Vector6> guess, const LookModel& model,
                                         int iterations, double converged);
 

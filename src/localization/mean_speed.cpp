@@ -7,8 +7,8 @@ namespace {
 
 /// The speed is averaged until the distance is known to this share of it …
 constexpr double kKnown = 0.03;
-/// … but over no longer than this (s), in which the base may have come to another speed.
-constexpr double kLongest = 1.2;
+/// … but over no longer than this, in which the base may have come to another speed.
+constexpr double kMaxAverage_s = 1.2;
 
 double seconds_of(const OdometryIncrement& u) {
   return (u.to - u.from).seconds();
@@ -16,15 +16,15 @@ double seconds_of(const OdometryIncrement& u) {
 
 }  // namespace
 
-OdometryIncrement MeanSpeed::even(const OdometryIncrement& increment) {
+OdometryIncrement MeanSpeed::at_mean_speed(const OdometryIncrement& increment) {
   const double dt = seconds_of(increment);
   if (!(dt > 0.0)) return increment;
   recent_.push_back(increment);
-  while ((increment.to - recent_.front().from).seconds() > kLongest && recent_.size() > 1)
+  while ((increment.to - recent_.front().from).seconds() > kMaxAverage_s && recent_.size() > 1)
     recent_.pop_front();
-  OdometryIncrement even = increment;
-  even.trans = dt * speed();
-  return even;
+  OdometryIncrement at_mean = increment;
+  at_mean.trans = dt * speed();
+  return at_mean;
 }
 
 double MeanSpeed::speed() const {

@@ -1,5 +1,7 @@
 #include "vigia/localization/pattern_fix.hpp"
 
+#include "lost_probability.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -7,7 +9,7 @@
 #include <Eigen/Cholesky>
 
 #include "vigia/localization/chi_square.hpp"
-#include "vigia/localization/ekf_state.hpp"
+#include "vigia/localization/motion.hpp"
 
 namespace vigia::localization {
 namespace {
@@ -42,14 +44,20 @@ OdometryIncrement rest_of(const OdometryIncrement& u, Stamp stamp) {
 PatternFixLocalizer::PatternFixLocalizer(LandmarkMap map, const RigOnGround& on_ground,
                                          const PatternFixParams& params)
     : map_(std::move(map)), on_ground_(on_ground), params_(params) {
-  reset(Stamp{}, Prior{});
+  reset(Stamp{}, std::nullopt);
 }
 
-void PatternFixLocalizer::reset(Stamp stamp, const Prior& prior) {
+void PatternFixLocalizer::reset(Stamp stamp, const std::optional<Prior>& prior) {
   history_.clear();
   start_ = stamp;
   belief_ = Belief{};
-  believe(on_the_floor(prior, on_ground_.ground), stamp);
+  if (!prior) belief_.status = BeliefStatus::lost;
+  believe(on_the_floor(prior.value_or(anywhere()), on_ground_.ground), stamp);
+}
+
+void PatternFixLocalizer::lose() {
+  belief_.status = BeliefStatus::lost;
+  belief_.lost_probability = kSaidLost;
 }
 
 void PatternFixLocalizer::believe(const SpatialPose& pose, Stamp stamp) {
@@ -58,6 +66,9 @@ void PatternFixLocalizer::believe(const SpatialPose& pose, Stamp stamp) {
   belief_.pose = planar.pose;
   belief_.covariance = planar.covariance;
   belief_.in_space = pose;
+  belief_.lost_probability = belief_.status == BeliefStatus::lost
+                                 ? kSaidLost
+                                 : probability_of_half_a_metre(belief_.position_sigma());
 }
 
 void PatternFixLocalizer::predict(const OdometryIncrement& increment) {
@@ -75,12 +86,12 @@ void PatternFixLocalizer::predict(const OdometryIncrement& increment) {
 
 UpdateResult PatternFixLocalizer::update(const Observation& observation) {
   UpdateResult result;
-  if (const auto* points = std::get_if<PointsObservation>(&observation)) result = take_in(*points);
+  if (const auto* points = std::get_if<PointsObservation>(&observation)) result = process(*points);
   ++counts_[static_cast<std::size_t>(result.status)];
   return result;
 }
 
-UpdateResult PatternFixLocalizer::take_in(const PointsObservation& observation) {
+UpdateResult PatternFixLocalizer::process(const PointsObservation& observation) {
   const Landmark* landmark = map_.find(observation.landmark);
   if (landmark == nullptr) return {UpdateStatus::gated, std::nullopt, 0.0, 0};
   if (!std::holds_alternative<PatternShape>(landmark->shape)) return {};

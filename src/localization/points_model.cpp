@@ -67,12 +67,12 @@ void compress(const Eigen::Matrix<double, 6, 6>& A, const Eigen::Matrix<double, 
               PointsMeasurement& measurement) {
   const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> factor(A);
   const Eigen::Matrix<double, 6, 1> D = factor.vectorD();
-  const double least = kNothing * D.maxCoeff();
+  const double min_pivot = kNothing * D.maxCoeff();
   Eigen::Matrix<double, 6, 1> root;
   Eigen::Matrix<double, 6, 1> inverse_root;
   for (Eigen::Index i = 0; i < 6; ++i) {
-    root(i) = D(i) > least ? std::sqrt(D(i)) : 0.0;
-    inverse_root(i) = D(i) > least ? 1.0 / root(i) : 0.0;
+    root(i) = D(i) > min_pivot ? std::sqrt(D(i)) : 0.0;
+    inverse_root(i) = D(i) > min_pivot ? 1.0 / root(i) : 0.0;
   }
   Eigen::Matrix<double, 6, 6> permutation = Eigen::Matrix<double, 6, 6>::Identity();
   permutation = factor.transpositionsP() * permutation;

@@ -13,7 +13,7 @@
 namespace vigia::localization {
 namespace {
 
-constexpr int kLeastPoints = 4;
+constexpr int kMinPoints = 4;
 /// Two minima nearer than this (m, rad) are one.
 constexpr double kSameMinimum = 1e-5;
 /// Smallest share of the spread that points off a line have across it.
@@ -143,7 +143,7 @@ std::optional<FittedPose> refine_pose(const std::vector<SeenPoint>& points,
 PointsPose solve_points(const std::vector<SeenPoint>& points, const Intrinsics& intrinsics,
                         const PointsPoseParams& params) {
   PointsPose result;
-  if (points.size() < kLeastPoints) return result;
+  if (points.size() < kMinPoints) return result;
   const auto start = start_pose(points, intrinsics);
   result.status = PointsPoseStatus::degenerate;
   if (!start) return result;

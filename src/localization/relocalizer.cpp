@@ -9,7 +9,6 @@
 #include <Eigen/LU>
 
 #include "vigia/localization/chi_square.hpp"
-#include "vigia/localization/ekf_state.hpp"
 
 namespace vigia::localization {
 namespace {
@@ -35,12 +34,10 @@ bool same_disc(const EllipseObservation& a, const EllipseObservation& b) {
 std::vector<EllipseObservation> distinct(const std::vector<EllipseObservation>& sightings) {
   std::vector<EllipseObservation> kept;
   for (const EllipseObservation& seen : sightings) {
-    const bool usable = seen.ellipse.b > 0.0 && measured_disc(seen).allFinite() &&
-                        measured_disc_covariance(seen).allFinite();
     const bool repeated =
         std::any_of(kept.begin(), kept.end(),
                     [&seen](const EllipseObservation& other) { return same_disc(seen, other); });
-    if (usable && !repeated) kept.push_back(seen);
+    if (is_usable(seen) && !repeated) kept.push_back(seen);
   }
   return kept;
 }
@@ -70,10 +67,13 @@ Pose2 align(const Eigen::Vector2d& q_a, const Eigen::Vector2d& q_b, const Eigen:
           mid_p.y() - std::sin(theta) * mid_q.x() - std::cos(theta) * mid_q.y(), theta};
 }
 
-Eigen::Matrix3d total_covariance(const DiscMeasurement& image, const Eigen::Matrix3d& R,
-                                 const SensorNoise& noise) {
-  return R + image.dz_dbias * look_covariance(noise) * image.dz_dbias.transpose() +
-         reading_covariance(image, noise);
+MeasurementParams measurement_params(const RelocalizerParams& params) {
+  MeasurementParams measurement;
+  measurement.sensor = params.sensor;
+  measurement.gate_probability = params.gate_probability;
+  measurement.centre_floor_px = params.centre_floor_px;
+  measurement.size_floor = params.size_floor;
+  return measurement;
 }
 
 bool same_place(const Pose2& a, const Pose2& b) {
@@ -85,11 +85,10 @@ bool same_place(const Pose2& a, const Pose2& b) {
 
 Relocalizer::Relocalizer(LandmarkMap map, FloorPlan plan, const RigOnGround& on_ground,
                          const RelocalizerParams& params)
-    : map_(std::move(map)),
+    : params_(params),
+      model_(std::move(map), on_ground, measurement_params(params), plan),
       plan_(std::move(plan)),
-      on_ground_(on_ground),
-      params_(params),
-      gate_(chi_square_quantile(params.gate_probability, 3)) {}
+      biases_(look_covariance(params.sensor)) {}
 
 Relocalization Relocalizer::solve(const Sweep& sweep, const std::optional<Prior>& prior) const {
   const std::vector<EllipseObservation> sightings = distinct(sweep.sightings);
@@ -134,13 +133,13 @@ std::vector<Pose2> Relocalizer::seeds(const std::vector<EllipseObservation>& sig
   if (prior) poses.push_back(prior->pose);
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     for (std::size_t j = i + 1; j < sightings.size(); ++j) {
-      for (const Landmark& k : map_.all()) {
-        for (const Landmark& l : map_.all()) {
+      for (const Landmark& k : model_.map().all()) {
+        for (const Landmark& l : model_.map().all()) {
           if (k.id == l.id || !disc_radius(k) || !disc_radius(l)) continue;
-          const Eigen::Vector2d q_i = place(sightings[i], *disc_radius(k), on_ground_);
-          const Eigen::Vector2d q_j = place(sightings[j], *disc_radius(l), on_ground_);
-          const Eigen::Vector2d p_k = on_ground_.ground.in_plan(k.centre_w()).head<2>();
-          const Eigen::Vector2d p_l = on_ground_.ground.in_plan(l.centre_w()).head<2>();
+          const Eigen::Vector2d q_i = place(sightings[i], *disc_radius(k), model_.on_ground());
+          const Eigen::Vector2d q_j = place(sightings[j], *disc_radius(l), model_.on_ground());
+          const Eigen::Vector2d p_k = k.centre_w().head<2>();
+          const Eigen::Vector2d p_l = l.centre_w().head<2>();
           // Sizes off the optical axis overstate the range by up to a tenth.
           const double tolerance = 0.1 + 0.12 * (q_i.norm() + q_j.norm());
           if (std::abs((q_j - q_i).norm() - (p_l - p_k).norm()) < tolerance)
@@ -152,15 +151,15 @@ std::vector<Pose2> Relocalizer::seeds(const std::vector<EllipseObservation>& sig
   return poses;
 }
 
-Eigen::Matrix3d Relocalizer::pixel_covariance(const EllipseObservation& sighting) const {
-  const Eigen::Vector3d floor(params_.centre_floor_px, params_.centre_floor_px, params_.size_floor);
-  Eigen::Matrix3d R = measured_disc_covariance(sighting);
-  R.diagonal() += floor.cwiseAbs2();
-  return R;
+/// What a sighting of the landmark says about the pose, the biases of its look at zero.
+std::optional<Linearised<3>> Relocalizer::linearised(const Sighting& match,
+                                                     const Pose2& pose) const {
+  const auto disc = localization::match(model_, *match.sighting, *match.landmark);
+  return disc ? linearise(model_, *disc, state_vector(pose)) : std::nullopt;
 }
 
 std::optional<Relocalizer::Fit> Relocalizer::refine(const Pose2& start,
-                                                    const std::vector<Match>& matches,
+                                                    const std::vector<Sighting>& matches,
                                                     const std::optional<Prior>& prior) const {
   Fit fit;
   fit.pose = start;
@@ -174,18 +173,15 @@ std::optional<Relocalizer::Fit> Relocalizer::refine(const Pose2& start,
       gradient = information * e;
       fit.chi2 = e.dot(gradient);
     }
-    for (const Match& match : matches) {
-      const auto image =
-          predict_disc(*match.landmark, match.sighting->shot, on_ground_, fit.pose, {});
-      if (!image) return std::nullopt;
-      const Eigen::Matrix3d S =
-          total_covariance(*image, pixel_covariance(*match.sighting), params_.sensor);
-      const auto factor = S.llt();
-      const Eigen::Vector3d e = measured_disc(*match.sighting) - image->z;
-      const Eigen::Matrix3d weighted = factor.solve(image->dz_dpose);
-      information += image->dz_dpose.transpose() * weighted;
-      gradient += weighted.transpose() * e;
-      fit.chi2 += e.dot(factor.solve(e));
+    for (const Sighting& match : matches) {
+      const auto seen = linearised(match, fit.pose);
+      if (!seen) return std::nullopt;
+      const auto factor = marginal_covariance(*seen, biases_).llt();
+      const Eigen::Matrix3d J = pose_jacobian(*seen);
+      const Eigen::Matrix3d weighted = factor.solve(J);
+      information += J.transpose() * weighted;
+      gradient += weighted.transpose() * seen->y;
+      fit.chi2 += seen->y.dot(factor.solve(seen->y));
     }
     const auto factor = information.ldlt();
     const Eigen::Vector3d move = factor.solve(gradient);
@@ -197,9 +193,9 @@ std::optional<Relocalizer::Fit> Relocalizer::refine(const Pose2& start,
   return std::nullopt;
 }
 
-bool Relocalizer::plausible(const Match& match, const Pose2& pose) const {
+bool Relocalizer::plausible(const Sighting& match, const Pose2& pose) const {
   const Shot& shot = match.sighting->shot;
-  const Eigen::Isometry3d wMc = on_ground_.wMc(shot.camera, shot.head, pose);
+  const Eigen::Isometry3d wMc = model_.on_ground().wMc(shot.camera, shot.head, pose);
   if (!plan_.line_of_sight(wMc.translation(), match.landmark->centre_w())) return false;
   const auto image = disc_image(*match.landmark, pinhole(shot), wMc);
   if (!image) return false;
@@ -207,21 +203,21 @@ bool Relocalizer::plausible(const Match& match, const Pose2& pose) const {
   return std::abs(image->b / image->a - seen.b / seen.a) < params_.aspect_tolerance;
 }
 
-std::vector<Relocalizer::Match> Relocalizer::explain(
+std::vector<Relocalizer::Sighting> Relocalizer::explain(
     const Fit& fit, const std::vector<EllipseObservation>& sightings) const {
-  std::vector<Match> matches;
+  std::vector<Sighting> matches;
   for (const EllipseObservation& seen : sightings) {
-    Match best{&seen, nullptr};
-    double least = gate_;
-    for (const Landmark& landmark : map_.all()) {
-      const auto image = predict_disc(landmark, seen.shot, on_ground_, fit.pose, {});
+    Sighting best{&seen, nullptr};
+    double min_nis = model_.gate(3);
+    for (const Landmark& landmark : model_.map().all()) {
+      const auto image = linearised({&seen, &landmark}, fit.pose);
       if (!image) continue;
-      const Eigen::Matrix3d S = total_covariance(*image, pixel_covariance(seen), params_.sensor) +
-                                image->dz_dpose * fit.covariance * image->dz_dpose.transpose();
-      const Eigen::Vector3d e = measured_disc(seen) - image->z;
-      const double nis = e.dot(S.llt().solve(e));
-      if (nis > least || !plausible({&seen, &landmark}, fit.pose)) continue;
-      least = nis;
+      const Eigen::Matrix3d J = pose_jacobian(*image);
+      const Eigen::Matrix3d S =
+          marginal_covariance(*image, biases_) + J * fit.covariance * J.transpose();
+      const double nis = image->y.dot(S.llt().solve(image->y));
+      if (nis > min_nis || !plausible({&seen, &landmark}, fit.pose)) continue;
+      min_nis = nis;
       best.landmark = &landmark;
     }
     if (best.landmark != nullptr) matches.push_back(best);
@@ -231,7 +227,7 @@ std::vector<Relocalizer::Match> Relocalizer::explain(
 
 bool Relocalizer::should_be_seen(const Landmark& landmark, const Pose2& pose,
                                  const Shot& view) const {
-  const Eigen::Isometry3d wMc = on_ground_.wMc(view.camera, view.head, pose);
+  const Eigen::Isometry3d wMc = model_.on_ground().wMc(view.camera, view.head, pose);
   const auto image = disc_image(landmark, pinhole(view), wMc);
   if (!image || image->a < params_.min_radius_px) return false;
   const double margin = 2.0 * image->a;
@@ -243,16 +239,16 @@ bool Relocalizer::should_be_seen(const Landmark& landmark, const Pose2& pose,
          plan_.line_of_sight(wMc.translation(), landmark.centre_w());
 }
 
-std::set<LandmarkId> Relocalizer::landmarks_of(const std::vector<Match>& matches) {
+std::set<LandmarkId> Relocalizer::landmarks_of(const std::vector<Sighting>& matches) {
   std::set<LandmarkId> ids;
-  for (const Match& match : matches) ids.insert(match.landmark->id);
+  for (const Sighting& match : matches) ids.insert(match.landmark->id);
   return ids;
 }
 
 int Relocalizer::missed(const Hypothesis& hypothesis, const Sweep& sweep) const {
   const std::set<LandmarkId> seen = landmarks_of(hypothesis.matches);
-  return static_cast<int>(
-      std::count_if(map_.all().begin(), map_.all().end(), [&](const Landmark& landmark) {
+  return static_cast<int>(std::count_if(
+      model_.map().all().begin(), model_.map().all().end(), [&](const Landmark& landmark) {
         return seen.count(landmark.id) == 0 &&
                std::any_of(sweep.views.begin(), sweep.views.end(), [&](const Shot& view) {
                  return should_be_seen(landmark, hypothesis.fit.pose, view);

@@ -5,6 +5,18 @@
 namespace vigia::mission {
 
 std::unique_ptr<ExposedFrame> LateFrames::take(Stamp now) {
+  if (processing_.ns == 0) return arrived(now);
+  std::unique_ptr<ExposedFrame> processed;
+  if (in_work_ && done_ <= now) processed = std::move(in_work_);
+  if (!in_work_) {
+    in_work_ = arrived(now);
+    done_ = now + processing_;
+  }
+  return processed;
+}
+
+/// The newest frame that has arrived; the older ones are dropped.
+std::unique_ptr<ExposedFrame> LateFrames::arrived(Stamp now) {
   std::unique_ptr<ExposedFrame> newest;
   while (!on_the_way_.empty() && on_the_way_.front().shot.stamp + latency_ <= now) {
     newest = std::make_unique<ExposedFrame>(std::move(on_the_way_.front()));

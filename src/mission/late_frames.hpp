@@ -19,20 +19,28 @@ struct ExposedFrame {
   sim::RobotTruth truth;
 };
 
-/// Frames on their way from the camera: each arrives a fixed time after its exposure.
+/// Frames on their way from the camera: each arrives a fixed time after its exposure, and takes a
+/// fixed time to process. One is processed at a time: of those that arrive meanwhile the newest is
+/// next, the others are dropped.
 class LateFrames {
  public:
-  explicit LateFrames(Duration latency) : latency_(latency) {}
+  explicit LateFrames(Duration latency, Duration processing = {})
+      : latency_(latency), processing_(processing) {}
 
   void expose(ExposedFrame frame) { on_the_way_.push_back(std::move(frame)); }
-  /// The newest frame that has arrived by @p now and was not taken before, if any.
+  /// The newest frame that is processed by @p now and was not taken before, if any.
   std::unique_ptr<ExposedFrame> take(Stamp now);
-  /// The frame that was exposed last, while it is on its way.
-  const ExposedFrame* newest() const { return on_the_way_.empty() ? nullptr : &on_the_way_.back(); }
+  /// From the exposure to the end of the processing, where the frame need not wait for another.
+  Duration latency() const { return {latency_.ns + processing_.ns}; }
 
  private:
+  std::unique_ptr<ExposedFrame> arrived(Stamp now);
+
   Duration latency_;
+  Duration processing_;
   std::deque<ExposedFrame> on_the_way_;
+  std::unique_ptr<ExposedFrame> in_work_;
+  Stamp done_;
 };
 
 /// Dead reckoning of the last moments: takes the present belief back to when a frame was exposed.

@@ -3,9 +3,9 @@
 #include <memory>
 #include <string>
 
+#include "vigia/localization/landmark_information.hpp"
 #include "vigia/localization/localizer.hpp"
 #include "vigia/localization/pattern_fix.hpp"
-#include "vigia/localization/points_information.hpp"
 #include "vigia/localization/relocalizer.hpp"
 #include "vigia/mission/setup.hpp"
 
@@ -13,8 +13,6 @@ namespace vigia::mission {
 
 // What localization is made from, as a mission has it.
 
-std::unique_ptr<localization::Localizer> make_localizer(const std::string& name,
-                                                        const MissionSetup& setup);
 localization::PatternFixParams pattern_fix_params(const MissionSetup& setup);
 localization::RelocalizerParams relocalizer_params(const MissionSetup& setup);
 localization::LandmarkInformation landmark_information(const MissionSetup& setup);

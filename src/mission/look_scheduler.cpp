@@ -25,9 +25,7 @@ LookScheduler::LookScheduler(const MissionSetup& setup, const InformationModel& 
           setup.look.policy,
           {setup.look.fixed_landmark, RandomStream(seed, "look policy"), setup.world.landmarks,
            visibility_, head_model_, setup.look.rules, setup.look.perception})),
-      trigger_(setup.look.trigger) {
-  follow(setup.path);
-}
+      trigger_(setup.look.trigger) {}
 
 void LookScheduler::follow(const Path& path) {
   path_ = &path;
@@ -50,12 +48,12 @@ std::optional<LookScheduler::Decision> LookScheduler::choose(Stamp now, const Be
   for (const auto& [landmark, failure] : failures_)
     if (now <= failure.until) excluded.push_back(landmark);
 
-  const auto choice = policy_->choose(
-      {now, belief, head, going.station_m, *path_, setup_.world.landmarks, visibility_,
-       information_, excluded, head_model_, going.speed_mps, going.standing, setup_.ekf.odometry});
+  const auto choice =
+      policy_->choose({now, belief, head, going.station_m, *path_, setup_.world.landmarks,
+                       visibility_, information_, excluded, head_model_, going.speed_mps,
+                       going.standing, setup_.noise.odometry});
   if (!choice) return std::nullopt;
   GazeOrder order;
-  order.look = next_look_++;
   order.landmark = choice->landmark;
   order.zoom_mm = choice->zoom_mm;
   order.issued = now;
@@ -73,7 +71,6 @@ std::optional<GazeOrder> LookScheduler::prepare(Stamp now, const Belief& belief,
   prepared_ = now;
   const auto decision = choose(now, belief, head, going);
   waiting_ = decision ? std::optional(decision->order) : std::nullopt;
-  if (decision) --next_look_;
   return waiting_;
 }
 

@@ -21,7 +21,8 @@ class LookScheduler {
   planner::LookDemand demand(Stamp now, const Belief& belief, double travelled_m,
                              double remaining_m);
 
-  /// The robot follows this path from now on. It must outlive the scheduler's use of it.
+  /// The robot follows this path from now on: to be told before anything is chosen. It must outlive
+  /// the scheduler's use of it.
   void follow(const Path& path);
   /// The base as the next look finds it.
   struct Going {
@@ -35,7 +36,7 @@ class LookScheduler {
     std::optional<double> suitability;
     std::string reason;
   };
-  /// The next gaze order, or nothing when no landmark will do.
+  /// The next gaze order, whose look has no number yet, or nothing when no landmark will do.
   std::optional<Decision> choose(Stamp now, const Belief& belief, const HeadReading& head,
                                  const Going& going);
 
@@ -43,9 +44,6 @@ class LookScheduler {
   /// prepare. Takes no number and is asked at the planner's slow rate.
   std::optional<GazeOrder> prepare(Stamp now, const Belief& belief, const HeadReading& head,
                                    const Going& going);
-
-  /// A number for an acquisition that no policy chose (a stop of the search).
-  LookId next_look() { return next_look_++; }
 
   /// The landmark could not be acquired or held: it is left out for a while, which doubles with
   /// each failure until it is seen again.
@@ -63,7 +61,6 @@ class LookScheduler {
   planner::LookTrigger trigger_;
   planner::LookDemand last_ = planner::LookDemand::none;
   std::optional<Stamp> asked_;
-  LookId next_look_ = 1;
   std::optional<Stamp> prepared_;
   std::optional<GazeOrder> waiting_;
   struct Failure {

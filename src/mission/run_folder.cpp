@@ -17,10 +17,9 @@ RunFolder::RunFolder(const std::filesystem::path& folder) : impl_(std::make_uniq
 
 RunFolder::~RunFolder() = default;
 
-void RunFolder::on_start(const MissionSetup& setup, std::uint64_t seed) {
-  impl_->folder.add("mission.yaml", setup.resolved_yaml);
-  impl_->tables = std::make_unique<Tables>(impl_->folder.staging(), setup.localizers);
-  impl_->tables->seed(seed);
+void RunFolder::on_start(const MissionStart& start) {
+  impl_->folder.add("mission.yaml", start.setup.resolved_yaml);
+  impl_->tables = std::make_unique<Tables>(impl_->folder.staging(), start);
   impl_->busy_ms = 0.0;
 }
 

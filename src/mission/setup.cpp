@@ -1,31 +1,60 @@
 #include "vigia/mission/setup.hpp"
 
-#include "read_params.hpp"
+#include "params.hpp"
 
 #include <algorithm>
+
+#include "vigia/core/key_reference.hpp"
+#include "vigia/core/noise_params.hpp"
+#include "vigia/localization/params.hpp"
+#include "vigia/mission/localizers.hpp"
+#include "vigia/pilot/params.hpp"
+#include "vigia/planner/params.hpp"
+#include "vigia/servo/params.hpp"
+#include "vigia/sim/params.hpp"
+#include "vigia/tracking/trackers.hpp"
 
 namespace vigia::mission {
 namespace {
 
-constexpr Range kMetres{-1e4, 1e4};
+const Bounds kMetres{-1e4, 1e4};
 constexpr double kLeastRoute_m = 0.01;
 
-void read_start(MapReader start, const sim::RobotSetup& robot, MissionSetup& setup) {
-  const Eigen::Vector2d position = start.vector2("position_m", kMetres);
-  const double heading = from_deg(start.number("heading_deg", {-360.0, 360.0}));
-  setup.start_sigma_m = start.number("sigma_m", {0.0, 5.0}, 0.01);
-  setup.start_sigma_rad = from_deg(start.number("sigma_deg", {0.0, 180.0}, 0.2));
-  start.finish();
+void describe_world(ParamVisitor& v, MissionSetup& setup) {
+  describe(v, setup.world);
+  auto appearance = std::make_shared<sim::Appearance>();
+  sim::describe_appearance(v, setup.world, *appearance);
+  setup.appearance = std::move(appearance);
+}
+
+void describe_start(ParamVisitor& v, MissionSetup& setup) {
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();
+  double heading = 0.0;
+  v.vector("position_m", position, kMetres,
+           About("where the localizers are told the robot is").required());
+  v.angle("heading_deg", heading, {-360.0, 360.0},
+          About("which way they are told it looks").required());
+  v.number("sigma_m", setup.start_sigma_m, {0.0, 5.0},
+           "the true position is drawn round it with this, each coordinate; the prior says so");
+  v.angle("sigma_deg", setup.start_sigma_rad, {0.0, 180.0},
+          "the true heading is drawn round it with this; the prior says so");
   setup.start = {position.x(), position.y(), wrap_angle(heading)};
-  setup.prior.pose = setup.start;
-  const double variance = setup.start_sigma_m * setup.start_sigma_m;
-  setup.prior.covariance =
-      Eigen::Vector3d(variance, variance, setup.start_sigma_rad * setup.start_sigma_rad)
-          .asDiagonal();
-  if (setup.world.plan.clearance(position) < robot.robot.radius_m)
-    throw start.error("position_m", "the robot (radius " + std::to_string(robot.robot.radius_m) +
-                                        " m) does not fit here: it would overlap a wall or an "
-                                        "obstacle, or stand outside the room");
+  bool told = true;
+  v.boolean(
+      "prior", told,
+      "whether the localizers are told where the drive begins; `false`: they find themselves");
+  if (told) {
+    const double variance = setup.start_sigma_m * setup.start_sigma_m;
+    const Eigen::Vector3d variances(variance, variance,
+                                    setup.start_sigma_rad * setup.start_sigma_rad);
+    setup.prior = Prior{setup.start, variances.asDiagonal()};
+  }
+  if (v.reader() == nullptr) return;
+  const double radius_m = setup.robot.robot.radius_m;
+  v.require(setup.world.plan.clearance(position) >= radius_m, "position_m",
+            "the robot (radius " + std::to_string(radius_m) +
+                " m) does not fit here: it would overlap a wall or an obstacle, or stand outside "
+                "the room");
 }
 
 [[noreturn]] void report_route_failure(const MapReader& route, const planner::Route& found) {
@@ -43,113 +72,171 @@ void read_start(MapReader start, const sim::RobotSetup& robot, MissionSetup& set
   }
 }
 
-void read_route(MapReader route, MissionSetup& setup) {
+void describe_route(ParamVisitor& v, MissionSetup& setup) {
   setup.waypoints.push_back(setup.start.position());
-  if (route.has("via_m"))
-    for (const auto& via : route.points2("via_m", kMetres, 0)) setup.waypoints.push_back(via);
-  setup.waypoints.push_back(route.vector2("goal_m", kMetres));
+  v.given("via_m", [&] {
+    std::vector<Eigen::Vector2d> vias;
+    v.points("via_m", vias, kMetres, 0, About("to pass, in order").required());
+    setup.waypoints.insert(setup.waypoints.end(), vias.begin(), vias.end());
+  });
+  Eigen::Vector2d goal = Eigen::Vector2d::Zero();
+  v.vector("goal_m", goal, kMetres, About("where to go").required());
+  setup.waypoints.push_back(goal);
   const bool moves = std::any_of(
       setup.waypoints.begin(), setup.waypoints.end(),
       [&](const auto& p) { return (p - setup.waypoints.front()).norm() > kLeastRoute_m; });
-  if (!moves) throw route.error("goal_m", "the route ends where it starts: nothing to drive");
+  v.require(moves, "goal_m", "the route ends where it starts: nothing to drive");
+  describe(v, setup.route);
+  v.integer("seed", setup.route_seed, {0, 2147483647},
+            "of the route planner: one route for every seed of the mission");
+}
+
+/// @p route: its map in the file.
+void plan_mission_route(const MapReader& route, MissionSetup& setup) {
   setup.route.robot_radius_m = setup.robot.robot.radius_m;
-  setup.route.clearance_m = route.number("clearance_m", {0.0, 5.0}, setup.route.clearance_m);
-  setup.route.iterations =
-      static_cast<int>(route.integer("iterations", {1, 1000000}, setup.route.iterations));
-  setup.route.spacing_m = route.number("spacing_m", {0.005, 1.0}, setup.route.spacing_m);
-  setup.route_seed = static_cast<std::uint64_t>(
-      route.integer("seed", {0, 2147483647}, static_cast<std::int64_t>(setup.route_seed)));
-  route.finish();
   const planner::Route found =
       planner::plan_route(setup.world.plan, setup.waypoints, setup.route, setup.route_seed);
   if (found.status != planner::RouteStatus::found) report_route_failure(route, found);
   setup.path = found.path;
 }
 
-void read_tracker(MapReader& mission, MissionSetup& setup) {
-  static const std::vector<std::string> names{"disc", "ellipse", "correlation"};
-  setup.tracker = names[mission.choice("tracker", names, 0)];
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-bool is_pattern(const Landmark& landmark) {
-  return std::holds_alternative<PatternShape>(landmark.shape);
+void require_fit(ParamVisitor& v, const char* key, const MissionSetup& setup) {
+  if (v.reader() == nullptr) return;
+  for (const std::string& name : setup.localizers) {
+    const LocalizerEntry& entry = *find_name(localizers(), name);
+    v.require(entry.fits(setup), key, "'" + name + "' needs " + entry.needs);
+    v.require(setup.prior || !needs_prior(entry, setup), key,
+              "'" + name +
+                  "' cannot start without a prior (start.prior: false); leave it out, or let it be "
+                  "the primary where the recovery can find it");
+  }
 }
 
-void read_localization(MapReader localization, MissionSetup& setup) {
-  std::vector<std::string> names{"ekf", "odometry"};
-  const auto& landmarks = setup.world.landmarks.all();
-  if (std::any_of(landmarks.begin(), landmarks.end(), is_pattern))
-    names.emplace_back("pattern_fix");
-  setup.primary = names[localization.choice("primary", names, 0)];
-  setup.localizers = names;
-  read_ekf(localization.map("ekf"), setup.robot.robot, setup.ekf);
-  localization.finish();
+/// The localizers that are named, one of which closes the loop; or that one, and the usual ones.
+void describe_localizers(ParamVisitor& v, MissionSetup& setup) {
+  const auto known = names_of(localizers());
+  const About run = About("that run").otherwise("the cheap ones that suit robot and world");
+  const About primary = "the localizer that closes the loop; `vigia help localizers` has a table";
+  if (v.reader() != nullptr && v.reader()->has("localizers")) {
+    v.names("localizers", setup.localizers, known, run);
+    if (!contains(setup.localizers, setup.primary)) setup.primary = setup.localizers.front();
+    v.name("primary", setup.primary, setup.localizers, primary);
+    require_fit(v, "localizers", setup);
+    return;
+  }
+  v.name("primary", setup.primary, known, primary);
+  setup.localizers = usual_localizers(setup);
+  if (!contains(setup.localizers, setup.primary)) setup.localizers.push_back(setup.primary);
+  require_fit(v, "primary", setup);
+  v.names("localizers", setup.localizers, known, run);
+}
+
+void describe_localization(ParamVisitor& v, MissionSetup& setup) {
+  describe_localizers(v, setup);
+  // Matched to the robot unless the mission says otherwise.
+  setup.noise.odometry = setup.robot.robot.odometry;
+  setup.noise.sensor = setup.robot.robot.sensor;
+  v.map("noise", setup.noise,
+        "what the robot believes of its sensors' errors; a localizer's own keys override it");
+  setup.ekf.odometry = setup.noise.odometry;
+  setup.ekf.sensor = setup.noise.sensor;
+  setup.ekf.centre_floor_px = setup.noise.centre_floor_px;
+  setup.ekf.size_floor = setup.noise.size_floor;
+  v.map("ekf", setup.ekf, "the extended Kalman filter");
+  setup.bearing_only.odometry = setup.noise.odometry;
+  setup.bearing_only.sensor = setup.noise.sensor;
+  v.map("bearing_only", setup.bearing_only, "the localizer that learns from bearings alone");
 }
 
 /// Patterns are told apart by their colours.
-void check_colour(const MapReader& mission, const MissionSetup& setup) {
+void require_colour(ParamVisitor& v, const MissionSetup& setup) {
   const auto& landmarks = setup.world.landmarks.all();
-  if (setup.robot.imaging.colour || std::none_of(landmarks.begin(), landmarks.end(), is_pattern))
-    return;
-  throw mission.error("robot",
-                      "the world has colour patterns, but the robot's camera sees grey: it needs "
-                      "camera.colour: true");
+  const bool patterns =
+      std::any_of(landmarks.begin(), landmarks.end(), [](const Landmark& landmark) {
+        return std::holds_alternative<PatternShape>(landmark.shape);
+      });
+  v.require(setup.robot.imaging.colour || !patterns, "robot",
+            "the world has colour patterns, but the robot's camera sees grey: it needs "
+            "camera.colour: true");
 }
 
-void check_fixed_landmark(const MapReader& look, const MissionSetup& setup) {
+void describe_planner(ParamVisitor& v, MissionSetup& setup) {
+  describe(v, setup.look);
   if (setup.look.policy != "fixed") return;
-  if (!setup.look.fixed_landmark)
-    throw look.error("policy", "the policy \"fixed\" needs the key fixed_landmark");
-  if (setup.world.landmarks.find(*setup.look.fixed_landmark) == nullptr)
-    throw look.error("fixed_landmark", "found " + std::to_string(*setup.look.fixed_landmark) +
-                                           ", which is no landmark of the world");
+  const auto& fixed = setup.look.fixed_landmark;
+  v.require(fixed.has_value(), "policy", "the policy \"fixed\" needs the key fixed_landmark");
+  v.require(setup.world.landmarks.find(*fixed) != nullptr, "fixed_landmark",
+            "found " + std::to_string(*fixed) + ", which is no landmark of the world");
+}
+
+void describe_pilot(ParamVisitor& v, MissionSetup& setup) {
+  describe(v, setup.pilot.follower);
+  v.where(setup.robot.range_ring.has_value(), "the robot has a `range_ring`", [&] {
+    // Matched to the robot's ring unless the mission says otherwise.
+    const sim::RangeRingParams ring = setup.robot.range_ring.value_or(sim::RangeRingParams{});
+    setup.pilot.ring.half_angle_deg = 0.5 * to_deg(ring.cone);
+    setup.pilot.ring.sigma_m = ring.sigma_m;
+    setup.pilot.ring.sigma_relative = ring.sigma_relative;
+    v.map("ring", setup.pilot.ring, "how the ring of range sensors is read");
+  });
+  v.map("avoidance", setup.pilot.avoidance, "how unknown obstacles are dealt with");
+}
+
+void describe_run(ParamVisitor& v, MissionSetup& setup) {
+  v.integer("seed", setup.seed, {0, 9e15}, "of every random stream; `--seed` overrides");
+  double rate_hz = 1.0 / setup.tick_s;
+  v.number("rate_hz", rate_hz, {5.0, 200.0}, "ticks, frames and odometry readings");
+  setup.tick_s = 1.0 / rate_hz;
+  v.number("timeout_s", setup.timeout_s, {1.0, 1e5}, "outcome `timeout` after this");
+  v.number("goal_tolerance_m", setup.goal_tolerance_m, {0.01, 10.0},
+           "of the true robot at the end, for the outcome `arrived`");
+  v.boolean("full_frames", setup.full_frames,
+            "compute every pixel of every frame (for comparison)");
+  v.integer("recorded_frames", setup.recorded_frames, {0, 1000},
+            "camera pictures in the run folder");
 }
 
 }  // namespace
+
+void describe(ParamVisitor& v, MissionSetup& setup) {
+  v.folder_name("name", setup.name, About("its run folder is named after it").required());
+  v.map_or_file("world", "the building", [&] { describe_world(v, setup); });
+  v.map_or_file("robot", "base, head and camera", [&] { describe(v, setup.robot); });
+  v.map("disturbances", setup.disturbances,
+        "what the true world does and the robot's model leaves out");
+  describe_run(v, setup);
+  v.map("start", "where the drive begins", [&] { describe_start(v, setup); });
+  v.name("tracker", setup.tracker, tracking::ellipse_tracker_names(),
+         "of discs; `vigia help trackers` tells them apart");
+  v.map("localization", "who estimates the pose", [&] { describe_localization(v, setup); });
+  v.map("planner", "when and where the robot looks", [&] { describe_planner(v, setup); });
+  require_colour(v, setup);
+  setup.gaze.look_angle = setup.noise.sensor.look_angle;
+  v.map("gaze", setup.gaze, "how head and zoom follow an order");
+  v.map("pilot", "how the base follows the route", [&] { describe_pilot(v, setup); });
+  v.map("recovery", setup.recovery, "what a lost robot does");
+  v.map("route", "the drive", [&] { describe_route(v, setup); });
+}
+
+std::vector<KeyRow> mission_keys() {
+  return key_reference<MissionSetup>("");
+}
 
 MissionSetup load_mission(const std::filesystem::path& file,
                           const std::vector<std::string>& overrides) {
   const auto root = load_config(file);
   for (const auto& assignment : overrides) set_config(*root, assignment);
   MapReader mission(root, "mission");
-
   MissionSetup setup;
-  setup.name = mission.folder_name("name");
-
-  MapReader world = mission.map_or_file("world");
-  setup.world = read_world_map(world);
-  setup.appearance = sim::read_appearance(world, setup.world);
-  world.finish();
-
-  MapReader robot = mission.map_or_file("robot");
-  setup.robot = sim::read_robot_setup(robot);
-  robot.finish();
-
-  setup.disturbances = sim::read_disturbances(mission.map("disturbances"));
-
-  setup.seed = static_cast<std::uint64_t>(mission.integer("seed", {0, 9e15}, 1));
-  const double rate = mission.number("rate_hz", {5.0, 200.0}, 25.0);
-  setup.tick_s = 1.0 / rate;
-  setup.timeout_s = mission.number("timeout_s", {1.0, 1e5}, setup.timeout_s);
-  setup.goal_tolerance_m = mission.number("goal_tolerance_m", {0.01, 10.0}, setup.goal_tolerance_m);
-  setup.full_frames = mission.boolean("full_frames", setup.full_frames);
-  setup.recorded_frames =
-      static_cast<int>(mission.integer("recorded_frames", {0, 1000}, setup.recorded_frames));
-
-  read_start(mission.map("start"), setup.robot, setup);
-  read_tracker(mission, setup);
-  read_localization(mission.map("localization"), setup);
-  MapReader look = mission.map("planner");
-  read_look(look, setup.look);
-  check_fixed_landmark(look, setup);
-  check_colour(mission, setup);
-  read_gaze(mission.map("gaze"), setup.gaze);
-  read_pilot(mission.map("pilot"), setup.robot, setup.pilot);
-  read_recovery(mission.map("recovery"), setup.recovery);
-  read_route(mission.map("route"), setup);
+  ParamReader visitor(mission);
+  describe(visitor, setup);
   mission.finish();
-
   setup.resolved_yaml = dump_config(*root);
+  plan_mission_route(mission.map("route"), setup);
   return setup;
 }
 

@@ -29,47 +29,60 @@ void write_tum(OutputFile& file, Stamp stamp, const Pose2& pose) {
   file.write(view(line));
 }
 
-std::string header(const std::vector<std::string>& localizers) {
+/// The columns of the first eye stand beside those of the attention, without a prefix; those of
+/// the others are named after their place in the rig.
+std::string eye_header(const std::vector<const perception::Eye*>& eyes, std::size_t i) {
+  std::string text;
+  for (const auto& column : eyes[i]->columns())
+    text += i == 0 ? "," + column : fmt::format(",eye{}_{}", i, column);
+  return text;
+}
+
+std::string header(const MissionStart& start) {
   std::string text =
       "stamp_s,x_true_m,y_true_m,theta_true_rad,v_mps,w_radps,pan_true_rad,tilt_true_rad,"
       "zoom_mm,pan_rad,tilt_rad,rot1_rad,trans_m,rot2_rad,v_command_mps,w_command_radps,station_m,"
-      "gaze,landmark,look,stopped,feature,u_px,v_px,a_px,b_px,psi_rad,centring_px";
-  for (const auto& name : localizers)
+      "gaze,landmark,look,stopped";
+  if (!start.eyes.empty()) text += eye_header(start.eyes, 0);
+  text += ",centring_px";
+  for (const auto& name : start.setup.localizers)
     for (const char* column : {"x_m", "y_m", "theta_rad", "var_x", "var_y", "var_theta", "cov_xy",
                                "cov_xtheta", "cov_ytheta", "status", "update", "nis"})
       text += "," + name + "_" + column;
-  return text + ",activation_follow,activation_avoid,activation_hold\n";
+  text += ",activation_follow,activation_avoid,activation_hold";
+  for (std::size_t i = 1; i < start.eyes.size(); ++i) text += eye_header(start.eyes, i);
+  for (const auto& name : start.setup.localizers)
+    text += "," + name + "_lost_probability," + name + "_hypotheses";
+  return text + "\n";
 }
 
 void put_state(Buffer& line, const Tick& tick) {
   const auto& truth = tick.truth;
   put(line, "{:.3f},{:.6f},{:.6f},{:.7f},{:.5f},{:.5f},{:.7f},{:.7f},{:.4f},{:.7f},{:.7f}",
-      tick.now.seconds(), truth.pose.x, truth.pose.y, truth.pose.theta, truth.base.v, truth.base.w,
-      truth.head.pan, truth.head.tilt, truth.zoom_mm, tick.head.angles.pan, tick.head.angles.tilt);
-  put(line, ",{:.8f},{:.8f},{:.8f},{:.5f},{:.5f},{:.4f}", tick.odometry.rot1, tick.odometry.trans,
-      tick.odometry.rot2, tick.base_command.v, tick.base_command.w, tick.station_m);
+      tick.estimator.now.seconds(), truth.pose.x, truth.pose.y, truth.pose.theta, truth.base.v,
+      truth.base.w, truth.head.pan, truth.head.tilt, truth.zoom_mm, tick.head.angles.pan,
+      tick.head.angles.tilt);
+  put(line, ",{:.8f},{:.8f},{:.8f},{:.5f},{:.5f},{:.4f}", tick.estimator.odometry.rot1,
+      tick.estimator.odometry.trans, tick.estimator.odometry.rot2, tick.base_command.v,
+      tick.base_command.w, tick.station_m);
 }
 
-/// Centre, and of an ellipse its axes, of other features their radius.
-void put_feature(Buffer& line, const Observation* seen) {
-  if (seen == nullptr) {
-    put(line, ",,,,,,");
-  } else if (const auto* disc = std::get_if<EllipseObservation>(seen)) {
-    const Ellipse& e = disc->ellipse;
-    put(line, ",{:.4f},{:.4f},{:.4f},{:.4f},{:.5f},", e.u, e.v, e.a, e.b, e.psi);
-  } else {
-    const ImageExtent extent = image_extent(*seen);
-    put(line, ",{:.4f},{:.4f},{:.4f},,,", extent.centre.x(), extent.centre.y(), extent.radius_px);
-  }
+void put_attention(Buffer& line, const AttentionTick& attention) {
+  put(line, ",{},", to_string(attention.gaze));
+  if (attention.order) put(line, "{}", attention.order->landmark);
+  put(line, ",{},{}", attention.look, attention.stopped_to_look ? 1 : 0);
 }
 
-void put_gaze(Buffer& line, const Tick& tick) {
-  put(line, ",{},", to_string(tick.gaze));
-  if (tick.order) put(line, "{}", tick.order->landmark);
-  put(line, ",{},{},", tick.look, tick.stopped_to_look ? 1 : 0);
-  if (tick.feature) put(line, "{}", tracking::to_string(*tick.feature));
-  put_feature(line, tick.observation);
-  if (tick.centring_px) put(line, "{:.4f}", *tick.centring_px);
+/// The cells of an eye, empty where its camera has not delivered.
+void put_eye(Buffer& line, const perception::Eye& eye, const std::vector<EyeTick>& ticks) {
+  std::string cells;
+  const auto tick =
+      std::find_if(ticks.begin(), ticks.end(), [&](const EyeTick& one) { return one.eye == &eye; });
+  if (tick != ticks.end() && tick->observed)
+    eye.append_cells(cells);
+  else
+    cells.assign(eye.columns().size(), ',');
+  put(line, "{}", cells);
 }
 
 void put_belief(Buffer& line, const LocalizerTick& localizer) {
@@ -78,11 +91,12 @@ void put_belief(Buffer& line, const LocalizerTick& localizer) {
   put(line, ",{:.6f},{:.6f},{:.7f},{:.4e},{:.4e},{:.4e},{:.4e},{:.4e},{:.4e},{},", b.pose.x,
       b.pose.y, b.pose.theta, p(0, 0), p(1, 1), p(2, 2), p(0, 1), p(0, 2), p(1, 2),
       to_string(b.status));
-  if (localizer.update)
-    put(line, "{},{:.4f}", localization::to_string(localizer.update->status),
-        localizer.update->nis);
-  else
+  if (localizer.updates.empty()) {
     put(line, ",");
+    return;
+  }
+  const localization::UpdateResult& update = localizer.updates.back();
+  put(line, "{},{:.4f}", localization::to_string(update.status), update.nis);
 }
 
 void put_activations(Buffer& line, const std::optional<pilot::Activations>& activations) {
@@ -107,45 +121,54 @@ nlohmann::json percentiles(const std::vector<TickTiming>& timings, double TickTi
 
 }  // namespace
 
-Tables::Tables(const std::filesystem::path& folder, const std::vector<std::string>& localizers)
-    : ticks_(folder / "ticks.csv"),
+Tables::Tables(const std::filesystem::path& folder, const MissionStart& start)
+    : eyes_(start.eyes),
+      ticks_(folder / "ticks.csv"),
       events_(folder / "events.jsonl"),
       timing_(folder / "timing.csv"),
       truth_(folder / "truth.tum") {
-  for (const auto& name : localizers) localizers_.emplace_back(folder / (name + ".tum"));
-  ticks_.write(header(localizers));
+  for (const auto& name : start.setup.localizers)
+    localizers_.emplace_back(folder / (name + ".tum"));
+  ticks_.write(header(start));
   timing_.write("stamp_s,step_ms,render_ms,track_ms,localize_ms,plan_ms,servo_ms\n");
-}
-
-void Tables::seed(std::uint64_t seed) {
-  events_.write(nlohmann::json{{"t_s", 0.0}, {"event", "start"}, {"seed", seed}}.dump() + "\n");
+  events_.write(nlohmann::json{{"t_s", 0.0}, {"event", "start"}, {"seed", start.seed}}.dump() +
+                "\n");
 }
 
 void Tables::tick(const Tick& tick) {
+  const EstimatorTick& estimator = tick.estimator;
   Buffer line;
   put_state(line, tick);
-  put_gaze(line, tick);
-  for (const auto& localizer : tick.localizers) put_belief(line, localizer);
+  put_attention(line, tick.attention.value_or(AttentionTick{}));
+  if (!eyes_.empty()) put_eye(line, *eyes_.front(), tick.eyes);
+  line.push_back(',');
+  if (tick.attention && tick.attention->centring_px)
+    put(line, "{:.4f}", *tick.attention->centring_px);
+  for (const auto& localizer : estimator.localizers) put_belief(line, localizer);
   put_activations(line, tick.activations);
+  for (std::size_t i = 1; i < eyes_.size(); ++i) put_eye(line, *eyes_[i], tick.eyes);
+  for (const auto& localizer : estimator.localizers)
+    put(line, ",{:.4g},{}", localizer.belief->lost_probability,
+        localizer.belief->hypotheses.size());
   line.push_back('\n');
   ticks_.write(view(line));
 
-  write_tum(truth_, tick.now, tick.truth.pose);
+  write_tum(truth_, estimator.now, tick.truth.pose);
   for (std::size_t i = 0; i < localizers_.size(); ++i)
-    write_tum(localizers_[i], tick.now, tick.localizers[i].belief->pose);
+    write_tum(localizers_[i], estimator.now, estimator.localizers[i].belief->pose);
 
   const TickTiming& t = tick.timing;
   timings_.push_back(t);
   Buffer timing;
-  put(timing, "{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f}\n", tick.now.seconds(), t.step,
-      t.render, t.track, t.localize, t.plan, t.servo);
+  put(timing, "{:.3f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f}\n", tick.estimator.now.seconds(),
+      t.step, t.render, t.track, t.localize, t.plan, t.servo);
   timing_.write(view(timing));
 }
 
 void Tables::event(const Event& event) {
   nlohmann::ordered_json line;
   line["t_s"] = event.stamp.seconds();
-  line["event"] = event.kind;
+  line["event"] = to_string(event.kind);
   for (const auto& [key, value] : event.numbers) {
     // Counts and ids are whole numbers and read as such.
     if (value == std::floor(value) && std::abs(value) < 1e15)

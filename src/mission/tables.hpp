@@ -12,9 +12,8 @@ namespace vigia::mission {
 /// The run folder's text files that grow tick by tick: ticks.csv, *.tum, events.jsonl, timing.csv.
 class Tables {
  public:
-  Tables(const std::filesystem::path& folder, const std::vector<std::string>& localizers);
+  Tables(const std::filesystem::path& folder, const MissionStart& start);
 
-  void seed(std::uint64_t seed);
   void tick(const Tick& tick);
   void event(const Event& event);
   void close();
@@ -23,6 +22,7 @@ class Tables {
   std::string timing_json(double wall_s, double sim_s) const;
 
  private:
+  std::vector<const perception::Eye*> eyes_;
   OutputFile ticks_;
   OutputFile events_;
   OutputFile timing_;

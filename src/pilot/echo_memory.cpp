@@ -11,12 +11,12 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kSameThing = 0.20;  // m between two echoes of one thing, and
-constexpr double kSameAngle = 0.10;  // rad more per metre of range
-constexpr double kNews = 0.5;        // share of the newest echo in a thing's place
-constexpr int kMostHits = 6;         // so that a thing that went away is soon forgotten
-constexpr double kBehind = 0.20;     // m beyond a thing at which an echo means that it is gone
-constexpr std::size_t kMost = 40;    // things remembered
+constexpr double kSameThing = 0.20;     // m between two echoes of one thing, and
+constexpr double kSameAngle = 0.10;     // rad more per metre of range
+constexpr double kNews = 0.5;           // share of the newest echo in a thing's place
+constexpr int kMaxHits = 6;             // so that a thing that went away is soon forgotten
+constexpr double kBehind = 0.20;        // m beyond a thing at which an echo means that it is gone
+constexpr std::size_t kMaxThings = 40;  // things remembered
 
 /// The reading whose beam points nearest to a bearing.
 const RangeReading& beam_towards(const RangeScan& scan, double bearing) {
@@ -52,9 +52,9 @@ void EchoMemory::note(const Vector2d& front_r, Stamp now) {
   }
   if (nearest != nullptr) {
     nearest->front_r += kNews * (front_r - nearest->front_r);
-    nearest->hits = std::min(nearest->hits + 1, kMostHits);
+    nearest->hits = std::min(nearest->hits + 1, kMaxHits);
     nearest->seen = now;
-  } else if (echoes_.size() < kMost) {
+  } else if (echoes_.size() < kMaxThings) {
     echoes_.push_back({front_r, 1, now});
   }
 }

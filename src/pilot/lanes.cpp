@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double kStep = 0.25;      // m between two stations of the lattice
-constexpr int kLanesAStep = 2;      // that a way may change between two stations
+constexpr int kLanesAStep = 2;      // that a detour may change between two stations
 constexpr double kOffPath = 0.3;    // cost per metre driven and metre of offset
 constexpr double kOtherSide = 0.6;  // per metre on the side that was not chosen
 constexpr double kSoft = 0.30;      // m from a thing within which closeness costs
@@ -97,8 +97,8 @@ void Lanes::link(int layer, const std::vector<RoundObstacle>& things) {
   }
 }
 
-std::optional<WayRound> Lanes::search(const Path& path, double station, const Vector2d& robot,
-                                      const std::vector<RoundObstacle>& things, double beside_m) {
+std::optional<Detour> Lanes::search(const Path& path, double station, const Vector2d& robot,
+                                    const std::vector<RoundObstacle>& things, double beside_m) {
   beside_m_ = beside_m;
   const std::vector<double> stations = stations_ahead(path, station, params_.horizon_m);
   lanes_ = 2 * static_cast<int>(params_.widest_m / params_.lane_m) + 1;
@@ -114,17 +114,17 @@ std::optional<WayRound> Lanes::search(const Path& path, double station, const Ve
     if (node(layers - 1, lane).cost < node(layers - 1, best).cost) best = lane;
   if (std::isinf(node(layers - 1, best).cost)) return std::nullopt;
 
-  WayRound way;
+  Detour detour;
   double area = 0.0;
   for (int layer = layers - 1, lane = best; layer >= 0;
        lane = node(layer, lane).previous, --layer) {
-    way.push_back(node(layer, lane).p);
+    detour.push_back(node(layer, lane).p);
     area += offset(lane);
   }
   if (side_ == 0.0 && area != 0.0) side_ = std::copysign(1.0, area);
-  way.push_back(robot);
-  std::reverse(way.begin(), way.end());
-  return way;
+  detour.push_back(robot);
+  std::reverse(detour.begin(), detour.end());
+  return detour;
 }
 
 }  // namespace vigia::pilot

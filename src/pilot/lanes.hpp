@@ -13,22 +13,23 @@
 
 namespace vigia::pilot {
 
-/// A way beside the path: points of the world from the robot on.
-using WayRound = std::vector<Eigen::Vector2d>;
+/// A detour beside the path: points of the world from the robot on.
+using Detour = std::vector<Eigen::Vector2d>;
 
-/// Finds the cheapest way along lanes beside a path: a lattice of stations × lateral offsets,
-/// searched by dynamic programming. A way costs its length, its distance from the path and its
+/// Finds the cheapest detour along lanes beside a path: a lattice of stations × lateral offsets,
+/// searched by dynamic programming. A detour costs its length, its distance from the path and its
 /// closeness to things; it keeps AvoidanceParams::wall_m from walls.
 class Lanes {
  public:
   Lanes(const FloorPlan& plan, double robot_radius_m, AvoidanceParams params)
       : plan_(&plan), robot_radius_m_(robot_radius_m), params_(params) {}
 
-  /// The way from @p robot, which is at @p station of @p path, that keeps @p beside_m from the
-  /// things; nothing when every one is blocked. A way found before holds later ones to its side of
-  /// the path until forget(), so that the robot does not dither before what it could pass on both.
-  std::optional<WayRound> search(const Path& path, double station, const Eigen::Vector2d& robot,
-                                 const std::vector<RoundObstacle>& things, double beside_m);
+  /// The detour from @p robot, which is at @p station of @p path, that keeps @p beside_m from the
+  /// things; nothing when every one is blocked. A detour found before holds later ones to its side
+  /// of the path until forget(), so that the robot does not dither before what it could pass on
+  /// both.
+  std::optional<Detour> search(const Path& path, double station, const Eigen::Vector2d& robot,
+                               const std::vector<RoundObstacle>& things, double beside_m);
 
   void forget() { side_ = 0.0; }
 
@@ -63,7 +64,7 @@ class Lanes {
   double robot_radius_m_;
   AvoidanceParams params_;
   double beside_m_ = 0.0;
-  double side_ = 0.0;  ///< 1: the latest way was on the left of the path, -1: on its right
+  double side_ = 0.0;  ///< 1: the latest detour was on the left of the path, -1: on its right
   int lanes_ = 1;
   std::vector<Node> nodes_;
 };

@@ -21,11 +21,11 @@ using Eigen::Vector2d;
 constexpr double kUnblocked = std::numeric_limits<double>::infinity();
 constexpr double kPathStep = 0.10;       // m between the places on the path that are tried
 constexpr double kBesideWindow = 0.5;    // m that the station may advance in one step off the path
-constexpr double kAhead = 0.35;          // m, of the point that is pursued on the way round
+constexpr double kAhead = 0.35;          // m, of the point that is pursued on the detour
 constexpr double kProgress = 0.15;       // m along the path that count as progress
-constexpr double kSearchEvery = 0.2;     // s between two searches for a way round
+constexpr double kSearchEvery = 0.2;     // s between two searches for a detour
 constexpr double kStands = 0.02;         // m/s below which the base is said to wait
-constexpr double kNearerOnTheWay = 0.6;  // of the distance from things, once the way is driven
+constexpr double kNearerOnDetour = 0.6;  // of the distance from things, once the detour is driven
 
 Vector2d to_world(const Pose2& base, const Vector2d& p_r) {
   const double c = std::cos(base.theta);
@@ -40,7 +40,7 @@ Vector2d to_base(const Pose2& base, const Vector2d& p_w) {
   return {c * d.x() + s * d.y(), -s * d.x() + c * d.y()};
 }
 
-/// Where along the path something is in the way.
+/// Where along the path something blocks it.
 struct Blockade {
   double ahead_m = kUnblocked;
   std::optional<Vector2d> thing;
@@ -89,11 +89,11 @@ struct Pilot::Impl {
         memory(p.ring),
         lanes(floor, radius, p.avoidance),
         executor(radius, base, p.avoidance),
-        round(base, from_deg(p.follower.turn_in_place_deg)) {}
+        detour_pursuit(base, from_deg(p.follower.turn_in_place_deg)) {}
 
   void look(const PilotInput& input);
-  void find_way(const PilotInput& input, const std::vector<RoundObstacle>& things);
-  void drop_way();
+  void plan_detour(const PilotInput& input, const std::vector<RoundObstacle>& things);
+  void drop_detour();
   BaseRates avoid(const Pose2& base);
   void keep_station(const Pose2& base, const Blockade& blockade);
   PilotStatus status(const PilotInput& input, const PilotOutput& output, bool cut) const;
@@ -108,14 +108,14 @@ struct Pilot::Impl {
   EchoMemory memory;
   Lanes lanes;
   Executor executor;
-  Pursuit round;  ///< of the way round
+  Pursuit detour_pursuit;  ///< of the detour
 
   std::optional<Stamp> scanned;
   std::optional<Stamp> stepped;
   std::optional<Stamp> searched;
   std::vector<Hazard> hazards;
   std::vector<char> unexplained;
-  std::optional<Path> way;
+  std::optional<Path> detour;
   bool evading = false;
   double lasted_s = 0.0;  ///< of the path's being blocked
   double mark_m = 0.0;    ///< the station of the latest progress
@@ -157,28 +157,28 @@ std::vector<RoundObstacle> Pilot::Impl::things(const Pose2& base) const {
   return result;
 }
 
-void Pilot::Impl::find_way(const PilotInput& input, const std::vector<RoundObstacle>& things) {
+void Pilot::Impl::plan_detour(const PilotInput& input, const std::vector<RoundObstacle>& things) {
   const Duration every = Duration::from_seconds(kSearchEvery);
   if (searched && input.now - *searched < every) return;
   searched = input.now;
-  const double beside = params.avoidance.beside_m * (evading ? kNearerOnTheWay : 1.0);
+  const double beside = params.avoidance.beside_m * (evading ? kNearerOnDetour : 1.0);
   const auto found = lanes.search(follower.path(), follower.station(), input.belief.pose.position(),
                                   things, beside);
-  way.reset();
-  if (found) way.emplace(*found);
+  detour.reset();
+  if (found) detour.emplace(*found);
 }
 
-void Pilot::Impl::drop_way() {
-  way.reset();
+void Pilot::Impl::drop_detour() {
+  detour.reset();
   lanes.forget();
   searched.reset();
 }
 
 BaseRates Pilot::Impl::avoid(const Pose2& base) {
   const Vector2d here = base.position();
-  const double reached = way->project(here, 0.0, std::min(way->length(), 2.0 * kAhead));
-  const Vector2d target = way->at(reached + kAhead);
-  return round.step(to_base(base, target), std::min(params.avoidance.speed, limits.speed));
+  const double reached = detour->project(here, 0.0, std::min(detour->length(), 2.0 * kAhead));
+  const Vector2d target = detour->at(reached + kAhead);
+  return detour_pursuit.step(to_base(base, target), std::min(params.avoidance.speed, limits.speed));
 }
 
 /// Beside the path the station goes on, and the path is followed again once it is reached.
@@ -191,7 +191,7 @@ void Pilot::Impl::keep_station(const Pose2& base, const Blockade& blockade) {
   const double off = (path.at(at) - base.position()).norm();
   if (off > params.avoidance.rejoin_m || std::isfinite(blockade.ahead_m)) return;
   evading = false;
-  drop_way();
+  drop_detour();
 }
 
 PilotStatus Pilot::Impl::status(const PilotInput& input, const PilotOutput& output,
@@ -239,14 +239,15 @@ PilotOutput Pilot::step(const PilotInput& input) {
   const bool blocked = std::isfinite(blockade.ahead_m);
   if (self.evading) self.keep_station(base, blockade);
   if (blocked || self.evading || self.lasted_s > 0.0)
-    self.find_way(input, things);
+    self.plan_detour(input, things);
   else
-    self.drop_way();
+    self.drop_detour();
 
   PilotOutput output;
-  output.in_the_way = blockade.thing;
+  output.obstacle_ahead = blockade.thing;
   output.activations = supervise(
-      {input.hold, blockade.ahead_m, self.lasted_s, self.evading, self.way.has_value()}, avoidance);
+      {input.hold, blockade.ahead_m, self.lasted_s, self.evading, self.detour.has_value()},
+      avoidance);
   const Activations& a = output.activations;
   if (a.avoid > 0.5) self.evading = true;
 
@@ -272,7 +273,7 @@ PilotOutput Pilot::step(const PilotInput& input) {
 void Pilot::follow(Path path) {
   Impl& self = *impl_;
   self.follower = PathFollower(std::move(path), self.limits, self.params.follower);
-  self.drop_way();
+  self.drop_detour();
   self.evading = false;
   self.lasted_s = 0.0;
   self.mark_m = 0.0;

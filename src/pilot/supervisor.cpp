@@ -18,9 +18,9 @@ Activations supervise(const Situation& situation, const AvoidanceParams& params)
   const double near = 1.0 - rising(situation.ahead_m, params.near_m, params.notice_m);
   const double lasting = rising(situation.lasted_s, 0.5 * params.patience_s, params.patience_s);
   Activations activations;
-  if (situation.way_round) activations.avoid = situation.evading ? 1.0 : lasting;
-  const bool lost_its_way = situation.evading && !situation.way_round;
-  activations.hold = (1.0 - activations.avoid) * (lost_its_way ? 1.0 : near);
+  if (situation.detour_exists) activations.avoid = situation.evading ? 1.0 : lasting;
+  const bool detour_lost = situation.evading && !situation.detour_exists;
+  activations.hold = (1.0 - activations.avoid) * (detour_lost ? 1.0 : near);
   activations.follow = 1.0 - activations.avoid - activations.hold;
   return activations;
 }

@@ -55,7 +55,7 @@ std::vector<std::string> groups_of(const std::vector<ArmPoint>& arms) {
   return groups;
 }
 
-// Shape and colour tell a group apart, so that either alone is enough.
+// Shape and colour distinguish a group, so that either alone is enough.
 void draw_mark(const Sheet& sheet, const Eigen::Vector2d& at, std::size_t group) {
   const std::size_t shape = group % 4;
   if (shape == 0) {

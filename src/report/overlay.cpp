@@ -8,6 +8,8 @@
 namespace vigia::report {
 namespace {
 
+using imaging::Overlay;
+
 using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
 
 bool finite(const Ellipse& e) {

@@ -192,6 +192,10 @@ TEST(ScoreRecord, ComesBackEqualToTheBit) {
   ekf.position_rmse_m = 1.0 / 3.0;
   ekf.nees_mean = 5e-324;
   ekf.lost = {{1.5, std::nullopt, std::nullopt}, {std::nullopt, 2.25, 3.0}};
+  ekf.loss.false_alarms = 2;
+  ekf.loss.delay_mean_s = 1.0 / 7.0;
+  ekf.loss.brier = 0.1 + 0.7;
+  ekf.loss.calibration[7] = {5, 0.1 + 0.6, 3};
   ekf.looks = {{3, 0.1, 0.2, 0.3}, {4, 1e300, -0.0, 0.7}};
   score.perception.looks = 22;
   score.recovery = {2, 1, 0.7};
@@ -205,6 +209,7 @@ TEST(ScoreRecord, ComesBackEqualToTheBit) {
   EXPECT_EQ(back.localizers.at("ekf").looks[1].nees, 1e300);
   EXPECT_EQ(back.localizers.at("ekf").lost[1].passed_s, 2.25);
   EXPECT_FALSE(back.localizers.at("ekf").lost[0].ended_s);
+  EXPECT_EQ(back.localizers.at("ekf").loss.calibration[7].mean_probability, 0.1 + 0.6);
   EXPECT_EQ(back.recovery.recovering_s, 0.7);
 }
 

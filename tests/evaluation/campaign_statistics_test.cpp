@@ -1,6 +1,6 @@
 #include "vigia/evaluation/campaign_statistics.hpp"
 
-#include "loss_watch.hpp"
+#include "lost_episodes.hpp"
 
 #include <algorithm>
 #include <sstream>
@@ -143,13 +143,13 @@ TEST(CampaignReport, NamesTheBaselineAndLeavesItWithoutDifferences) {
 
 TEST(LossWatch, OpensWhenItSaysSoAndClosesWhenItTracksWithASmallError) {
   std::vector<LostEpisode> episodes;
-  watch_for_loss(episodes, 1.0, false, 0.4);
+  update_episodes(episodes, 1.0, false, 0.4);
   EXPECT_TRUE(episodes.empty());
-  watch_for_loss(episodes, 2.0, true, 0.4);
-  watch_for_loss(episodes, 3.0, true, 0.6);
-  watch_for_loss(episodes, 4.0, false, 0.3);
-  watch_for_loss(episodes, 5.0, false, 0.2);
-  watch_for_loss(episodes, 6.0, false, 0.4);
+  update_episodes(episodes, 2.0, true, 0.4);
+  update_episodes(episodes, 3.0, true, 0.6);
+  update_episodes(episodes, 4.0, false, 0.3);
+  update_episodes(episodes, 5.0, false, 0.2);
+  update_episodes(episodes, 6.0, false, 0.4);
   ASSERT_EQ(episodes.size(), 1u);
   EXPECT_EQ(episodes[0].said_s, 2.0);
   EXPECT_EQ(episodes[0].passed_s, 3.0);
@@ -160,8 +160,8 @@ TEST(LossWatch, OpensWhenItSaysSoAndClosesWhenItTracksWithASmallError) {
 
 TEST(LossWatch, AnErrorThatPassesUnsaidIsNotAnnounced) {
   std::vector<LostEpisode> episodes;
-  watch_for_loss(episodes, 1.0, false, 0.51);
-  watch_for_loss(episodes, 2.0, true, 0.7);
+  update_episodes(episodes, 1.0, false, 0.51);
+  update_episodes(episodes, 2.0, true, 0.7);
   ASSERT_EQ(episodes.size(), 1u);
   EXPECT_FALSE(episodes[0].announced());
   EXPECT_EQ(episodes[0].began_s(), 1.0);
@@ -170,7 +170,7 @@ TEST(LossWatch, AnErrorThatPassesUnsaidIsNotAnnounced) {
 
 TEST(LossWatch, SayingSoAtTheInstantItPassesCounts) {
   std::vector<LostEpisode> episodes;
-  watch_for_loss(episodes, 1.0, true, 0.51);
+  update_episodes(episodes, 1.0, true, 0.51);
   EXPECT_TRUE(episodes.at(0).announced());
 }
 

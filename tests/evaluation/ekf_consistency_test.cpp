@@ -11,7 +11,6 @@ namespace {
 
 using localization::EkfLocalizer;
 using localization::EkfParams;
-using localization::measured_disc_covariance;
 using localization::test::Drive;
 using localization::test::DriveNoise;
 using localization::test::DriveStep;
@@ -53,8 +52,7 @@ Run run_filter(const Drive& drive, const EkfParams& params) {
       const auto result = ekf.update(*step.seen);
       const bool fused = result.status == localization::UpdateStatus::fused;
       fused ? ++run.fused : ++run.other;
-      bound.update(step.pose, *map.find(*step.seen->expected), step.seen->shot, step.bias,
-                   measured_disc_covariance(*step.seen));
+      bound.update(step.pose, step.bias, *map.find(*step.seen->expected), *step.seen);
     }
     before = step.pose;
     const PoseSample sample{step.pose, ekf.belief().pose, ekf.belief().covariance};

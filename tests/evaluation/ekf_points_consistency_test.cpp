@@ -50,8 +50,7 @@ void run(const DriveNoise& noise, std::uint64_t seed, PointsCampaign& campaign) 
       const bool fused = ekf.update(*seen[i]).status == localization::UpdateStatus::fused;
       fused ? ++campaign.fused : ++campaign.other;
       const Landmark& landmark = *map.find(seen[i]->landmark);
-      ASSERT_TRUE(bound.update(step.pose, landmark, seen[i]->shot, step.bias,
-                               localization::seen_points(landmark, *seen[i])));
+      ASSERT_TRUE(bound.update(step.pose, step.bias, landmark, *seen[i]));
     }
     const PoseSample sample{step.pose, ekf.belief().pose, ekf.belief().covariance};
     campaign.errors.back() += difference(sample.estimate, sample.truth).head<2>().squaredNorm();

@@ -21,7 +21,7 @@ TEST(PosteriorBound, EqualsTheCovarianceOfAFilterThatSitsOnTheTruth) {
   params.centre_floor_px = 0.0;
   params.size_floor = 0.0;
   localization::EkfLocalizer ekf(map, {head_rig(drive.geometry), {}}, params);
-  ekf.reset({}, {drive.start, drive.prior.covariance});
+  ekf.reset({}, Prior{drive.start, drive.prior.covariance});
   PosteriorBound bound(drive.prior.covariance, {head_rig(drive.geometry), {}}, drive.noise.sensor);
   RandomStream random(1, "unused");
   Pose2 before = drive.start;
@@ -37,8 +37,7 @@ TEST(PosteriorBound, EqualsTheCovarianceOfAFilterThatSitsOnTheTruth) {
                                                           {}, 0.0, 0.0, random);
     seen.covariance = step.seen->covariance;
     ASSERT_EQ(ekf.update(seen).status, localization::UpdateStatus::fused);
-    ASSERT_TRUE(
-        bound.update(step.pose, landmark, shot, {}, localization::measured_disc_covariance(seen)));
+    ASSERT_TRUE(bound.update(step.pose, {}, landmark, seen));
     ASSERT_TRUE(ekf.belief().covariance.isApprox(bound.covariance(), 1e-6));
   }
 }
@@ -46,7 +45,7 @@ TEST(PosteriorBound, EqualsTheCovarianceOfAFilterThatSitsOnTheTruth) {
 TEST(PosteriorBound, ALandmarkWithoutAnImageChangesNothing) {
   PosteriorBound bound(0.01 * Eigen::Matrix3d::Identity(), {}, {});
   const Landmark behind = localization::test::disc(1, -3.0, 0.0, 1.0, 0.0);
-  EXPECT_FALSE(bound.update({}, behind, {}, {}, Eigen::Matrix3d::Identity()));
+  EXPECT_FALSE(bound.update({}, {}, behind, EllipseObservation{}));
   EXPECT_TRUE(bound.covariance().isApprox(0.01 * Eigen::Matrix3d::Identity()));
 }
 

@@ -53,7 +53,7 @@ class BatchLook {
  public:
   BatchLook(const Look& look, const EkfParams& params) : look_(look), params_(params) {}
 
-  EkfState solve() const {
+  LookState solve() const {
     Eigen::VectorXd unknown = Eigen::VectorXd::Zero(6 + 3 * (kImages - 1));
     Eigen::MatrixXd information;
     for (int i = 0; i < 20; ++i) {
@@ -66,7 +66,7 @@ class BatchLook {
       return trajectory(x).back();
     };
     const Eigen::MatrixXd J = derivative(end, unknown);
-    EkfState state;
+    LookState state;
     state.mean = trajectory(unknown).back();
     state.covariance = J * information.ldlt().solve(J.transpose());
     return state;
@@ -140,7 +140,7 @@ TEST(EkfLook, ALookEndsWhereALeastSquaresSolutionOfAllItsImagesEnds) {
     ASSERT_EQ(ekf.update(look.images[k]).status, UpdateStatus::fused) << i;
     if (k < look.measured.size()) ekf.predict(look.measured[k]);
   }
-  const EkfState batch = BatchLook(look, params).solve();
+  const LookState batch = BatchLook(look, params).solve();
   EXPECT_LT((ekf.state().mean - batch.mean).cwiseAbs().maxCoeff(), 1e-6);
   EXPECT_LT((ekf.state().covariance - batch.covariance).norm(), 1e-3 * batch.covariance.norm());
 }

@@ -116,6 +116,7 @@ TEST(EkfPoints, APatternWithOneDotAstrayIsGated) {
 
 TEST(EkfPoints, AnImageWithoutUsablePointsIsDegenerate) {
   EkfLocalizer ekf(LandmarkMap({kSeenPattern}), {}, {});
+  ekf.reset({}, prior_about(kTruth));
   PointsObservation seen = seen_by(kSeenPattern, 0.1, 1);
   seen.points.clear();
   EXPECT_EQ(ekf.update(seen).status, UpdateStatus::degenerate);

@@ -53,14 +53,14 @@ EkfLocalizer precise_at(const Pose2& pose) {
   return ekf_at(pose, test::room_landmarks(), params);
 }
 
-void expect_equal(const EkfState& a, const EkfState& b, double tolerance) {
+void expect_equal(const LookState& a, const LookState& b, double tolerance) {
   EXPECT_TRUE(a.stamp == b.stamp);
   EXPECT_EQ(a.look, b.look);
   EXPECT_LT((a.mean - b.mean).cwiseAbs().maxCoeff(), tolerance);
   EXPECT_LT((a.covariance - b.covariance).cwiseAbs().maxCoeff(), tolerance);
 }
 
-TEST(EkfState, PartsOfAnIncrementEndWhereTheWholeEnds) {
+TEST(LookState, PartsOfAnIncrementEndWhereTheWholeEnds) {
   RandomStream random(1, "parts");
   for (int i = 0; i < 100; ++i) {
     const OdometryIncrement whole{Stamp::from_seconds(1.0), Stamp::from_seconds(1.2),
@@ -74,12 +74,12 @@ TEST(EkfState, PartsOfAnIncrementEndWhereTheWholeEnds) {
   }
 }
 
-TEST(EkfState, ANewLookForgetsTheBiasesAndKeepsThePose) {
+TEST(LookState, ANewLookForgetsTheBiasesAndKeepsThePose) {
   const SensorNoise noise;
-  EkfState state = initial_state({}, prior_at(kPose), noise);
+  LookState state = initial_state({}, prior_at(kPose), noise);
   state.mean(3) = 0.01;
   state.covariance.setConstant(1e-6);
-  const EkfState fresh = begin_look(state, 7, noise);
+  const LookState fresh = begin_look(state, 7, noise);
   EXPECT_EQ(fresh.look, 7);
   EXPECT_EQ(fresh.bias().pan, 0.0);
   EXPECT_TRUE(fresh.pose_covariance().isApprox(state.pose_covariance()));
@@ -206,7 +206,7 @@ TEST(Ekf, AnObservationOlderThanTheHistoryIsTooLate) {
   params.history_s = 0.5;
   EkfLocalizer ekf = ekf_at(kPose, test::room_landmarks(), params);
   for (int i = 0; i < 10; ++i) ekf.predict(forward(0.2 * i, 0.2 * (i + 1)));
-  const EkfState before = ekf.state();
+  const LookState before = ekf.state();
   const Landmark landmark = *test::room_landmarks().find(4);
   EXPECT_EQ(ekf.update(exact(landmark, kPose, 1, 1.0)).status, UpdateStatus::too_late);
   EXPECT_EQ(ekf.count(UpdateStatus::too_late), 1);
@@ -215,7 +215,7 @@ TEST(Ekf, AnObservationOlderThanTheHistoryIsTooLate) {
 
 TEST(Ekf, TheGateRejectsADiscThatIsNoLandmark) {
   EkfLocalizer ekf = ekf_at(kPose);
-  const EkfState before = ekf.state();
+  const LookState before = ekf.state();
   const auto result = ekf.update(exact(disc(9, 4.0, 7.0, 0.6, -90.0), kPose));
   EXPECT_EQ(result.status, UpdateStatus::gated);
   EXPECT_GT(result.nis, chi_square_quantile(0.999, 3));
@@ -239,7 +239,7 @@ TEST(Ekf, TwoDiscsThatExplainAnObservationEquallyWellMakeItAmbiguous) {
   const Landmark left = disc(1, 8.0, 3.02, 1.3, 180.0);
   const Landmark right = disc(2, 8.0, 2.98, 1.3, 180.0);
   EkfLocalizer ekf = ekf_at({4.0, 3.0, 0.0}, LandmarkMap({left, right}));
-  const EkfState before = ekf.state();
+  const LookState before = ekf.state();
   const auto result = ekf.update(exact(right, {4.0, 3.0, 0.0}));
   EXPECT_EQ(result.status, UpdateStatus::ambiguous);
   EXPECT_EQ(ekf.count(UpdateStatus::ambiguous), 1);

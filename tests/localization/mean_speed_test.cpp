@@ -15,26 +15,26 @@ OdometryIncrement straight_step(int tick, double v) {
 
 TEST(MeanSpeed, AReadingOfNextToNothingInADriveWentAsFarAsTheOthers) {
   MeanSpeed speed(kRough);
-  for (int tick = 0; tick < 40; ++tick) speed.even(straight_step(tick, 0.3));
-  EXPECT_NEAR(speed.even(straight_step(40, 0.001)).trans, 0.3 * kStep, 0.1 * 0.3 * kStep);
+  for (int tick = 0; tick < 40; ++tick) speed.at_mean_speed(straight_step(tick, 0.3));
+  EXPECT_NEAR(speed.at_mean_speed(straight_step(40, 0.001)).trans, 0.3 * kStep, 0.1 * 0.3 * kStep);
 }
 
 TEST(MeanSpeed, AReadingThatTellsItsDistanceIsTakenAtItsWord) {
   MeanSpeed speed({0.002, 0.015, 0.005});
-  for (int tick = 0; tick < 40; ++tick) speed.even(straight_step(tick, 0.3));
-  EXPECT_DOUBLE_EQ(speed.even(straight_step(40, 0.2)).trans, 0.2 * kStep);
+  for (int tick = 0; tick < 40; ++tick) speed.at_mean_speed(straight_step(tick, 0.3));
+  EXPECT_DOUBLE_EQ(speed.at_mean_speed(straight_step(40, 0.2)).trans, 0.2 * kStep);
 }
 
 TEST(MeanSpeed, AReadingOfExactlyNothingIsThatOfABaseThatStands) {
   MeanSpeed speed(kRough);
-  for (int tick = 0; tick < 40; ++tick) speed.even(straight_step(tick, 0.3));
-  EXPECT_EQ(speed.even(straight_step(40, 0.0)).trans, 0.0);
+  for (int tick = 0; tick < 40; ++tick) speed.at_mean_speed(straight_step(tick, 0.3));
+  EXPECT_EQ(speed.at_mean_speed(straight_step(40, 0.0)).trans, 0.0);
 }
 
 TEST(MeanSpeed, BackwardMotionStaysBackward) {
   MeanSpeed speed(kRough);
-  for (int tick = 0; tick < 40; ++tick) speed.even(straight_step(tick, -0.3));
-  EXPECT_NEAR(speed.even(straight_step(40, -0.3)).trans, -0.3 * kStep, 1e-12);
+  for (int tick = 0; tick < 40; ++tick) speed.at_mean_speed(straight_step(tick, -0.3));
+  EXPECT_NEAR(speed.at_mean_speed(straight_step(40, -0.3)).trans, -0.3 * kStep, 1e-12);
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ TEST(PatternFix, ItsCovarianceIsThatOfItsErrorsWithHeadAndFocalErrorIncluded) {
     LookBias bias = test::draw_bias(random, params.sensor);
     bias.pan += params.sensor.reading_angle * random.normal();
     bias.tilt += params.sensor.reading_angle * random.normal();
-    fix.reset({}, {});
+    fix.reset({}, Prior{});
     PointsObservation seen = seen_from(on_the_ramp(), kFixPattern, bias, 0.2, random);
     ASSERT_NE(fix.update(seen).status, UpdateStatus::unsupported);
     const SpatialPose& pose = *fix.belief().in_space;
@@ -104,7 +104,7 @@ TEST(PatternFix, ALateImageIsMovedToThePresent) {
   const auto drive = [](double from, double to) {
     return arc_increment(0.3, 0.4, Stamp::from_seconds(from), Stamp::from_seconds(to));
   };
-  fix.reset({}, {});
+  fix.reset({}, Prior{});
   fix.predict(drive(0.0, 0.2));
   fix.predict(drive(0.2, 0.4));
   const auto late =
@@ -129,7 +129,7 @@ TEST(PatternFix, ALateImageIsMovedToThePresent) {
 TEST(PatternFix, OlderThanItsHistoryIsTooLate) {
   RandomStream random(1, "unused");
   PatternFixLocalizer fix = localizer();
-  fix.reset({}, {});
+  fix.reset({}, Prior{});
   for (int i = 0; i < 30; ++i)
     fix.predict({Stamp::from_seconds(0.1 * i), Stamp::from_seconds(0.1 * (i + 1)), 0, 0.01, 0});
   const auto old = seen_from(on_the_ramp(), kFixPattern, {}, 0.0, random, Stamp::from_seconds(0.5));

@@ -12,7 +12,7 @@ namespace {
 class Looks : public Listener {
  public:
   void on_event(const Event& event) override {
-    if (event.kind != "look") return;
+    if (event.kind != EventKind::look) return;
     for (const auto& [name, value] : event.numbers) {
       if (name == "landmark") landmarks.insert(static_cast<LandmarkId>(value));
       if (name == "zoom_mm") ++planned;
@@ -26,13 +26,17 @@ class Looks : public Listener {
 class Updates : public Listener {
  public:
   void on_tick(const Tick& tick) override {
-    for (const LocalizerTick& localizer : tick.localizers) {
-      if (!localizer.update) continue;
-      ++count;
-      if (tick.observation == nullptr || shot_of(*tick.observation).look != tick.look) ++untold;
+    const EstimatorTick& estimator = tick.estimator;
+    for (const LocalizerTick& localizer : estimator.localizers) {
+      count += static_cast<int>(localizer.updates.size());
+      if (localizer.updates.size() != estimator.observations.size()) ++untold;
     }
+    for (const Observation& observation : estimator.observations)
+      if (shot_of(observation).look != tick.attention->look) ++untold;
   }
-  void on_event(const Event& event) override { dropped += event.kind == "dropped" ? 1 : 0; }
+  void on_event(const Event& event) override {
+    dropped += event.kind == EventKind::dropped ? 1 : 0;
+  }
   int count = 0;
   int untold = 0;
   int dropped = 0;

@@ -9,17 +9,20 @@
 namespace vigia::mission {
 namespace {
 
-class RealisticStory : public Listener {
+class RealisticEvents : public Listener {
  public:
   void on_event(const Event& event) override { ++count[event.kind]; }
   void on_tick(const Tick& tick) override {
-    if (tick.observation == nullptr) return;
-    ++observations;
-    late_by = tick.now - shot_of(*tick.observation).stamp;
-    if (tick.truth_at_exposure.stamp != shot_of(*tick.observation).stamp) ++mismatched;
-    if (shot_of(*tick.observation).look != tick.look) ++of_another_look;
+    const auto& observations_now = tick.estimator.observations;
+    for (std::size_t i = 0; i < observations_now.size(); ++i) {
+      const Shot& shot = shot_of(observations_now[i]);
+      ++observations;
+      late_by = tick.estimator.now - shot.stamp;
+      if (tick.estimator.truth->exposures[i].stamp != shot.stamp) ++mismatched;
+      if (shot.look != tick.attention->look) ++of_another_look;
+    }
   }
-  std::map<std::string, int> count;
+  std::map<EventKind, int> count;
   int observations = 0;
   int mismatched = 0;
   int of_another_look = 0;
@@ -46,22 +49,22 @@ TEST(Realistic, ADriveRunsToItsEndAndTheSameSeedGivesTheSameBytes) {
 
 TEST(Realistic, FramesArriveLateAndBelongToTheirExposureAndTheirLook) {
   const MissionSetup setup = realistic({"timeout_s=30"});
-  RealisticStory story;
-  run_mission(setup, 1, {&story});
-  EXPECT_GT(story.observations, 50);
-  EXPECT_EQ(story.late_by.ns, 80'000'000);
-  EXPECT_EQ(story.mismatched, 0);
-  EXPECT_EQ(story.of_another_look, 0);
+  RealisticEvents log;
+  run_mission(setup, 1, {&log});
+  EXPECT_GT(log.observations, 50);
+  EXPECT_EQ(log.late_by.ns, 80'000'000);
+  EXPECT_EQ(log.mismatched, 0);
+  EXPECT_EQ(log.of_another_look, 0);
 }
 
 TEST(Realistic, LatencyAloneLeavesTheTargetCentred) {
   const MissionSetup setup =
       load_mission(std::string(VIGIA_SOURCE_DIR) + "/config/missions/armingol-room.yaml",
                    {"disturbances.latency=realistic", "planner.dwell_s=2"});
-  RealisticStory story;
+  RealisticEvents log;
   evaluation::DriveScorer scorer;
-  EXPECT_EQ(run_mission(setup, 1, {&story, &scorer}), Outcome::arrived);
-  EXPECT_EQ(story.late_by.ns, 80'000'000);
+  EXPECT_EQ(run_mission(setup, 1, {&log, &scorer}), Outcome::arrived);
+  EXPECT_EQ(log.late_by.ns, 80'000'000);
   // Without latency it is 0.3 px; a servo that swings would be off by tens.
   EXPECT_LE(scorer.score().perception.centring_rms_px, 1.5);
 }
@@ -70,11 +73,11 @@ TEST(Realistic, AKidnappedRobotSaysThatItIsLost) {
   const MissionSetup setup =
       load_mission(std::string(VIGIA_SOURCE_DIR) + "/config/missions/armingol-room.yaml",
                    {"disturbances.kidnapping={earliest_s: 20, latest_s: 30}", "timeout_s=150"});
-  RealisticStory story;
+  RealisticEvents log;
   evaluation::DriveScorer scorer;
-  run_mission(setup, 3, {&story, &scorer});
-  EXPECT_EQ(story.count["kidnapped"], 1);
-  EXPECT_GE(story.count["lost"], 1);
+  run_mission(setup, 3, {&log, &scorer});
+  EXPECT_EQ(log.count[EventKind::kidnapped], 1);
+  EXPECT_GE(log.count[EventKind::lost], 1);
 }
 
 }  // namespace

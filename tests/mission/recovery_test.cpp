@@ -9,33 +9,63 @@
 namespace vigia::mission {
 namespace {
 
-class RecoveryStory : public Listener {
+class RecoveryEvents : public Listener {
  public:
   void on_event(const Event& event) override { kinds.push_back(event.kind); }
-  bool tells(const std::string& kind) const {
+  bool has(EventKind kind) const {
     return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
   }
-  std::vector<std::string> kinds;
+  std::vector<EventKind> kinds;
 };
 
 MissionSetup mission_with_prior_off_by(const Pose2& offset) {
   MissionSetup setup =
       load_mission(std::string(VIGIA_SOURCE_DIR) + "/config/missions/armingol-room.yaml");
-  setup.prior.pose = compose(setup.start, offset);
+  setup.prior->pose = compose(setup.start, offset);
   return setup;
 }
 
 TEST(Recovery, ARobotThatWasToldAWrongStartSaysItIsLostFindsItselfAndArrives) {
   const MissionSetup setup = mission_with_prior_off_by({0.3, -0.3, from_deg(-15)});
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    RecoveryStory story;
+    RecoveryEvents log;
     evaluation::DriveScorer scorer;
-    const Outcome outcome = run_mission(setup, seed, {&story, &scorer});
+    const Outcome outcome = run_mission(setup, seed, {&log, &scorer});
     EXPECT_EQ(outcome, Outcome::arrived) << "seed " << seed;
-    EXPECT_TRUE(story.tells("lost")) << "seed " << seed;
-    EXPECT_TRUE(story.tells("recovered")) << "seed " << seed;
+    EXPECT_TRUE(log.has(EventKind::lost)) << "seed " << seed;
+    EXPECT_TRUE(log.has(EventKind::recovered)) << "seed " << seed;
     EXPECT_LT(scorer.score().localizers.at("ekf").position_final_m, 0.05) << "seed " << seed;
     EXPECT_GT(scorer.score().localizers.at("ekf").lost_s, 0.0) << "seed " << seed;
+  }
+}
+
+TEST(Recovery, ARobotWithoutAPriorStartsLostFindsItselfAndArrives) {
+  const MissionSetup setup =
+      load_mission(std::string(VIGIA_SOURCE_DIR) + "/config/missions/armingol-room.yaml",
+                   {"start.prior=false", "localization.localizers=[ekf, bearing_only]"});
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    evaluation::DriveScorer scorer;
+    EXPECT_EQ(run_mission(setup, seed, {&scorer}), Outcome::arrived) << "seed " << seed;
+    const auto& ekf = scorer.score().localizers.at("ekf");
+    EXPECT_GE(ekf.loss.right_recoveries, 1) << "seed " << seed;
+    EXPECT_EQ(ekf.loss.wrong_recoveries, 0) << "seed " << seed;
+    EXPECT_EQ(ekf.loss.false_alarms, 0) << "seed " << seed;
+    EXPECT_LT(ekf.position_final_m, 0.05) << "seed " << seed;
+    const auto& bearings = scorer.score().localizers.at("bearing_only");
+    EXPECT_GT(bearings.lost_s + bearings.loss.ambiguous_s, 0.0) << "seed " << seed;
+    EXPECT_EQ(bearings.loss.wrong_recoveries, 0) << "seed " << seed;
+  }
+}
+
+TEST(Recovery, BearingsAloneDriveARobotToItsGoal) {
+  const MissionSetup setup =
+      load_mission(std::string(VIGIA_SOURCE_DIR) + "/config/missions/armingol-room.yaml",
+                   {"localization.localizers=[bearing_only]"});
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    evaluation::DriveScorer scorer;
+    EXPECT_EQ(run_mission(setup, seed, {&scorer}), Outcome::arrived) << "seed " << seed;
+    EXPECT_LT(scorer.score().localizers.at("bearing_only").position_rmse_m, 0.15)
+        << "seed " << seed;
   }
 }
 
@@ -47,11 +77,11 @@ TEST(Recovery, TwoLandmarksThatAreNotThereSufficeWhereThereIsNoThirdToLookAt) {
       load_mission(std::string(VIGIA_SOURCE_DIR) + "/config/missions/armingol-room.yaml",
                    {discs, "disturbances.missing_landmarks={probability: 1, at_most_one_in: 1}",
                     "planner.exclude_s=60", "timeout_s=30"});
-  RecoveryStory story;
-  run_mission(setup, 1, {&story});
-  const auto lost = std::find(story.kinds.begin(), story.kinds.end(), "lost");
-  ASSERT_NE(lost, story.kinds.end());
-  EXPECT_EQ(std::count(story.kinds.begin(), lost, "expired"), 2);
+  RecoveryEvents log;
+  run_mission(setup, 1, {&log});
+  const auto lost = std::find(log.kinds.begin(), log.kinds.end(), EventKind::lost);
+  ASSERT_NE(lost, log.kinds.end());
+  EXPECT_EQ(std::count(log.kinds.begin(), lost, EventKind::expired), 2);
 }
 
 TEST(Recovery, ARobotThatSeesNoLandmarkGivesUpAndSaysSo) {
@@ -60,10 +90,10 @@ TEST(Recovery, ARobotThatSeesNoLandmarkGivesUpAndSaysSo) {
   setup.ekf.lost_sigma_m = 1e-4;
   setup.recovery.sweeps = 1;
   setup.recovery.tilt = from_deg(-80);
-  RecoveryStory story;
-  EXPECT_EQ(run_mission(setup, 1, {&story}), Outcome::stuck);
-  EXPECT_TRUE(story.tells("lost"));
-  EXPECT_FALSE(story.tells("recovered"));
+  RecoveryEvents log;
+  EXPECT_EQ(run_mission(setup, 1, {&log}), Outcome::stuck);
+  EXPECT_TRUE(log.has(EventKind::lost));
+  EXPECT_FALSE(log.has(EventKind::recovered));
 }
 
 /// What happened on the way from being lost to being found.
@@ -75,27 +105,28 @@ class Search : public Listener {
         if (name == key) return value;
       return std::nan("");
     };
-    if (event.kind == "stroll") stroll_m.push_back(number("length_m"));
-    if (event.kind == "stroll") strolled_m.push_back(0.0);
-    if (event.kind == "looked_around") hypotheses.push_back(number("hypotheses"));
-    if (event.kind == "lost") lost_s = event.stamp.seconds();
-    searching = (searching || event.kind == "lost") && event.kind != "recovered";
-    just_found = just_found || event.kind == "recovered";
+    if (event.kind == EventKind::exploration) exploration_m.push_back(number("length_m"));
+    if (event.kind == EventKind::exploration) explored_m.push_back(0.0);
+    if (event.kind == EventKind::looked_around) hypotheses.push_back(number("hypotheses"));
+    if (event.kind == EventKind::lost) lost_s = event.stamp.seconds();
+    searching = (searching || event.kind == EventKind::lost) && event.kind != EventKind::recovered;
+    just_found = just_found || event.kind == EventKind::recovered;
   }
   void on_tick(const Tick& tick) override {
-    const double way = (tick.truth.pose.position() - tick.true_pose_before.position()).norm();
-    if (searching && !strolled_m.empty()) strolled_m.back() += way;
+    const double driven =
+        (tick.truth.pose.position() - tick.estimator.truth->pose_before.position()).norm();
+    if (searching && !explored_m.empty()) explored_m.back() += driven;
     if (searching && !tick.activations)
       most_in_sweep_mps = std::max(most_in_sweep_mps, std::abs(tick.base_command.v));
     if (!just_found) return;
     just_found = false;
-    const Belief& belief = *tick.localizers[tick.primary].belief;
+    const Belief& belief = tick.estimator.primary_belief();
     const Eigen::Vector3d error = difference(belief.pose, tick.truth.pose);
     distance2.push_back(error.dot(belief.covariance.inverse() * error));
     found_sigma_m = belief.position_sigma();
   }
-  std::vector<double> stroll_m;    ///< as the story has it
-  std::vector<double> strolled_m;  ///< truly driven from each stroll's beginning to the next's
+  std::vector<double> exploration_m;  ///< as the event log has it
+  std::vector<double> explored_m;     ///< truly driven from each one's beginning to the next's
   std::vector<double> hypotheses;
   std::vector<double> distance2;  ///< Mahalanobis, of the pose in which it found itself
   double found_sigma_m = 0.0;
@@ -112,8 +143,8 @@ constexpr double kFar2 = 21.1;
 MissionSetup woken(const std::string& mission, const std::vector<std::string>& overrides) {
   MissionSetup setup =
       load_mission(std::string(VIGIA_SOURCE_DIR) + "/config/missions/" + mission, overrides);
-  setup.prior.pose = compose(setup.start, {1.0, -0.5, from_deg(120)});
-  setup.prior.covariance = Eigen::Vector3d(9.0, 9.0, 9.0).asDiagonal();
+  setup.prior->pose = compose(setup.start, {1.0, -0.5, from_deg(120)});
+  setup.prior->covariance = Eigen::Vector3d(9.0, 9.0, 9.0).asDiagonal();
   return setup;
 }
 
@@ -133,7 +164,7 @@ TEST(Recovery, ARobotThatWokeAmongPatternsFindsItselfByTheirCodes) {
   }
 }
 
-TEST(Recovery, WhereTooLittleIsSeenItStrollsToWhereMoreIs) {
+TEST(Recovery, WhereTooLittleIsSeenItGoesToWhereMoreIs) {
   // Behind the partition wall one disc shows; farther on there are more.
   const MissionSetup setup =
       woken("armingol-room.yaml", {"timeout_s=60", "start={position_m: [3.9, 5.9], heading_deg: 0}",
@@ -141,16 +172,17 @@ TEST(Recovery, WhereTooLittleIsSeenItStrollsToWhereMoreIs) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     Search search;
     EXPECT_EQ(run_mission(setup, seed, {&search}), Outcome::arrived) << seed;
-    ASSERT_GE(search.stroll_m.size(), 1U) << seed;
-    ASSERT_EQ(search.hypotheses.size(), search.stroll_m.size() + 1) << seed;
+    ASSERT_GE(search.exploration_m.size(), 1U) << seed;
+    ASSERT_EQ(search.hypotheses.size(), search.exploration_m.size() + 1) << seed;
     EXPECT_EQ(search.hypotheses.front(), 0.0) << seed;
     EXPECT_GE(search.hypotheses.back(), 1.0) << seed;
     // It stops within the pilot's tolerance of the end.
-    for (std::size_t i = 0; i < search.stroll_m.size(); ++i) {
-      EXPECT_LE(search.strolled_m[i], search.stroll_m[i] + setup.pilot.follower.goal_tolerance_m)
+    for (std::size_t i = 0; i < search.exploration_m.size(); ++i) {
+      EXPECT_LE(search.explored_m[i],
+                search.exploration_m[i] + setup.pilot.follower.goal_tolerance_m)
           << seed;
-      EXPECT_GE(search.strolled_m[i],
-                search.stroll_m[i] - 2.0 * setup.pilot.follower.goal_tolerance_m)
+      EXPECT_GE(search.explored_m[i],
+                search.exploration_m[i] - 2.0 * setup.pilot.follower.goal_tolerance_m)
           << seed;
     }
     ASSERT_EQ(search.distance2.size(), 1U) << seed;
@@ -159,7 +191,7 @@ TEST(Recovery, WhereTooLittleIsSeenItStrollsToWhereMoreIs) {
   }
 }
 
-TEST(Recovery, ThereIsAStrollBetweenTwoSweepsAndNoneAfterTheLast) {
+TEST(Recovery, ThereIsAnExplorationBetweenTwoSweepsAndNoneAfterTheLast) {
   MissionSetup setup = mission_with_prior_off_by({});
   setup.ekf.lost_sigma_m = 1e-4;
   setup.recovery.sweeps = 3;
@@ -167,7 +199,7 @@ TEST(Recovery, ThereIsAStrollBetweenTwoSweepsAndNoneAfterTheLast) {
   Search search;
   EXPECT_EQ(run_mission(setup, 1, {&search}), Outcome::stuck);
   EXPECT_EQ(search.hypotheses.size(), 3U);
-  EXPECT_EQ(search.stroll_m.size(), 2U);
+  EXPECT_EQ(search.exploration_m.size(), 2U);
 }
 
 TEST(Recovery, WithoutARingItStaysWhereItIs) {
@@ -179,7 +211,7 @@ TEST(Recovery, WithoutARingItStaysWhereItIs) {
   Search search;
   EXPECT_EQ(run_mission(setup, 1, {&search}), Outcome::stuck);
   EXPECT_EQ(search.hypotheses.size(), 2U);
-  EXPECT_TRUE(search.stroll_m.empty());
+  EXPECT_TRUE(search.exploration_m.empty());
 }
 
 TEST(Mission, WithTheServosFeedForwardItsTargetStaysCentred) {

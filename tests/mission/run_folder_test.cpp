@@ -15,7 +15,6 @@
 namespace vigia::mission {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using vigia::testing::read_text;
 
@@ -72,27 +71,26 @@ std::vector<std::string> cells_of(const std::string& line) {
   return cells;
 }
 
-TEST_F(RunFolderTest, EndsEachRowWithTheActivationsOfThePilotsBehaviours) {
+/// Where a column of this name stands.
+std::size_t column(const std::vector<std::string>& names, const std::string& name) {
+  return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+}
+
+TEST_F(RunFolderTest, WritesTheActivationsOfThePilotsBehaviours) {
   const MissionSetup with_stops = room(
       {"timeout_s=10", "planner.trigger={kind: uncertainty, limit_1_m: 0.02, limit_2_m: 0.02}"});
   const auto lines = lines_of(read_text(drive(with_stops) / "ticks.csv"));
   const std::vector<std::string> names = cells_of(lines[0]);
-  const std::size_t first = names.size() - 3;
-  EXPECT_THAT(
-      std::vector<std::string>(names.begin() + static_cast<std::ptrdiff_t>(first), names.end()),
-      ElementsAre("activation_follow", "activation_avoid", "activation_hold"));
-  const auto stopped =
-      static_cast<std::size_t>(std::find(names.begin(), names.end(), "stopped") - names.begin());
   int held = 0;
   for (std::size_t i = 1; i < lines.size(); ++i) {
     const auto cells = cells_of(lines[i]);
     ASSERT_EQ(cells.size(), names.size()) << lines[i];
     // Nothing unknown is about: the path is followed unless somebody looks.
-    const bool holds = cells[stopped] == "1";
+    const bool holds = cells[column(names, "stopped")] == "1";
     held += holds ? 1 : 0;
-    EXPECT_EQ(cells[first], holds ? "0.0000" : "1.0000") << i;
-    EXPECT_EQ(cells[first + 1], "0.0000") << i;
-    EXPECT_EQ(cells[first + 2], holds ? "1.0000" : "0.0000") << i;
+    EXPECT_EQ(cells[column(names, "activation_follow")], holds ? "0.0000" : "1.0000") << i;
+    EXPECT_EQ(cells[column(names, "activation_avoid")], "0.0000") << i;
+    EXPECT_EQ(cells[column(names, "activation_hold")], holds ? "1.0000" : "0.0000") << i;
   }
   EXPECT_GT(held, 10);
   EXPECT_LT(held, static_cast<int>(lines.size()) - 10);
@@ -103,11 +101,28 @@ TEST_F(RunFolderTest, LeavesTheActivationsEmptyWhileALostRobotLooksAround) {
   setup.ekf.lost_sigma_m = 1e-4;
   const auto lines = lines_of(read_text(drive(setup) / "ticks.csv"));
   ASSERT_GT(lines.size(), 2U);
-  EXPECT_THAT(lines.back(), ::testing::EndsWith(",,,"));
-  EXPECT_EQ(cells_of(lines.back()).size(), cells_of(lines.front()).size());
+  const auto names = cells_of(lines.front());
+  const auto cells = cells_of(lines.back());
+  ASSERT_EQ(cells.size(), names.size());
+  for (const char* name : {"activation_follow", "activation_avoid", "activation_hold"})
+    EXPECT_EQ(cells[column(names, name)], "") << name;
 }
 
-TEST_F(RunFolderTest, TellsTheStoryFromStartToEnd) {
+TEST_F(RunFolderTest, EndsEachRowWithHowSureEachLocalizerIsOfNotBeingLost) {
+  const MissionSetup setup = room({"timeout_s=2"});
+  const auto lines = lines_of(read_text(drive(setup) / "ticks.csv"));
+  const auto names = cells_of(lines.front());
+  ASSERT_EQ(names.back(), setup.localizers.back() + "_hypotheses");
+  for (const auto& name : setup.localizers) {
+    const auto cells = cells_of(lines.back());
+    const double probability = std::stod(cells[column(names, name + "_lost_probability")]);
+    EXPECT_GE(probability, 0.0) << name;
+    EXPECT_LT(probability, 0.5) << name;
+    EXPECT_EQ(cells[column(names, name + "_hypotheses")], "0") << name;
+  }
+}
+
+TEST_F(RunFolderTest, LogsEventsFromStartToEnd) {
   const auto lines = lines_of(read_text(drive() / "events.jsonl"));
   EXPECT_THAT(lines.front(), HasSubstr("\"event\":\"start\""));
   EXPECT_THAT(lines.back(), HasSubstr("\"event\":\"timeout\""));

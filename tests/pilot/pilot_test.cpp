@@ -105,9 +105,9 @@ TEST(Pilot, AClosedDoorIsBlockedWithItsPlaceAndAnOpenedOneIsDriven) {
   while (drive.output.status != PilotStatus::blocked && drive.seconds < 60.0) drive.tick();
   ASSERT_EQ(drive.output.status, PilotStatus::blocked);
   EXPECT_LT(drive.pose.x, 5.0 - RingDrive::kRadius);
-  ASSERT_TRUE(drive.output.in_the_way);
-  EXPECT_NEAR(drive.output.in_the_way->x(), 5.1, 0.3);
-  EXPECT_NEAR(drive.output.in_the_way->y(), 3.0, 0.6);
+  ASSERT_TRUE(drive.output.obstacle_ahead);
+  EXPECT_NEAR(drive.output.obstacle_ahead->x(), 5.1, 0.3);
+  EXPECT_NEAR(drive.output.obstacle_ahead->y(), 3.0, 0.6);
   EXPECT_NEAR(drive.pilot.stalled_s(), PilotParams{}.avoidance.blocked_s, 1.0);
   EXPECT_GT(drive.nearest, 0.03);
   drive.unknown_faces = nullptr;

@@ -58,7 +58,7 @@ TEST_F(FuzzyPolicyTest, InMotionAPreselectedLandmarkComesAtTheZoomOfItsArea) {
 }
 
 TEST_F(FuzzyPolicyTest, AloneOfThePoliciesItWaitsWhereItWouldLook) {
-  for (const std::string& name : look_policy_names())
+  for (const std::string& name : names_of(look_policies()))
     EXPECT_EQ(make_look_policy(name, parts_)->prepares(), name == "fuzzy");
 }
 

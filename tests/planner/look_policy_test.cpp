@@ -28,9 +28,9 @@ class LookPolicyTest : public ::testing::Test {
 };
 
 TEST_F(LookPolicyTest, EveryNameMakesThePolicyOfThatName) {
-  EXPECT_THAT(look_policy_names(),
+  EXPECT_THAT(names_of(look_policies()),
               ElementsAre("fixed", "random", "nearest", "greedy", "fuzzy", "pattern"));
-  for (const std::string& name : look_policy_names()) EXPECT_EQ(make(name, 1)->name(), name);
+  for (const std::string& name : names_of(look_policies())) EXPECT_EQ(make(name, 1)->name(), name);
   EXPECT_EQ(make("clever", 1), nullptr);
 }
 

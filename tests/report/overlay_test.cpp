@@ -9,6 +9,8 @@
 namespace vigia::report {
 namespace {
 
+using imaging::Overlay;
+
 using Image = vpImage<vpRGBa>;
 
 Image plain(unsigned char grey, unsigned width = 640, unsigned height = 480) {

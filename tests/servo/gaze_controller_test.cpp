@@ -188,8 +188,8 @@ TEST_F(GazeControllerTest, APlannedZoomGivesWayWhereTheLandmarkWouldBeTooSmallOr
     const auto sighting = look(1);
     ASSERT_TRUE(sighting);
     const double slack = std::exp(GazeParams{}.settle_focal + 1e-3);
-    EXPECT_GE(sighting->radius_px * slack, GazeParams{}.planned_least_px) << x;
-    EXPECT_LE(sighting->radius_px, slack * GazeParams{}.planned_most * 240.0) << x;
+    EXPECT_GE(sighting->radius_px * slack, GazeParams{}.planned_min_px) << x;
+    EXPECT_LE(sighting->radius_px, slack * GazeParams{}.planned_max * 240.0) << x;
     gaze_.cancel();
   }
 }

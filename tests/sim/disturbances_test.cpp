@@ -54,7 +54,7 @@ TEST(Disturbances, ASingleKeyOverridesAll) {
 TEST(Disturbances, WhatAMapLeavesOutIsRealistic) {
   const auto slip = params_of("disturbances: {wheel_slip: {per_m: 3}}").wheel_slip;
   EXPECT_DOUBLE_EQ(slip->per_m, 3.0);
-  EXPECT_DOUBLE_EQ(slip->most_loss, WheelSlipParams{}.most_loss);
+  EXPECT_DOUBLE_EQ(slip->max_loss, WheelSlipParams{}.max_loss);
 }
 
 TEST(Disturbances, WhatIsReadIsWrittenOutAndReadsBackTheSame) {

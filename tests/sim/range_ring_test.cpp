@@ -1,11 +1,10 @@
-#include "vigia/sim/range_ring.hpp"
-
 #include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "vigia/core/error.hpp"
+#include "vigia/sim/params.hpp"
 
 namespace vigia::sim {
 namespace {
@@ -113,7 +112,8 @@ TEST(RangeRing, SaysWhatIsWrongInItsFile) {
   MapReader reader(parse_config("version: 1\nrange_ring: {cone_deg: 400}\n", "robot.yaml"),
                    "robot");
   try {
-    read_range_ring(reader.map("range_ring"));
+    RangeRingParams params;
+    read_params(reader.map("range_ring"), params);
     FAIL();
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), AllOf(HasSubstr("robot.yaml:2:"), HasSubstr("cone_deg")));

@@ -36,19 +36,19 @@ TEST(WheelSlip, LosesTheStatedShareOfTheWayInSlipsOfTheStatedNumberAndLength) {
     }
     slipping += kStep_m;
     lost += kStep_m - ground.distance;
-    ASSERT_GE(ground.distance, kStep_m * (1.0 - params.most_loss) - 1e-12);
-    ASSERT_LE(ground.distance, kStep_m * (1.0 - params.least_loss) + 1e-12);
+    ASSERT_GE(ground.distance, kStep_m * (1.0 - params.max_loss) - 1e-12);
+    ASSERT_LE(ground.distance, kStep_m * (1.0 - params.min_loss) + 1e-12);
   }
   const double driven = kSteps * kStep_m;
   // Gaps are exponential, so the slips in the way that does not slip are a Poisson number.
   const double expected = params.per_m * (driven - slipping);
   EXPECT_NEAR(slips, expected, kSlipSigmas * std::sqrt(expected));
-  const double mean_m = 0.5 * (params.least_m + params.most_m);
-  const double sigma_m = (params.most_m - params.least_m) / std::sqrt(12.0);
+  const double mean_m = 0.5 * (params.min_m + params.max_m);
+  const double sigma_m = (params.max_m - params.min_m) / std::sqrt(12.0);
   // A slip ends with the step in which its length is used up.
   EXPECT_NEAR(slipping / slips, mean_m + 0.5 * kStep_m,
               kSlipSigmas * sigma_m / std::sqrt(1.0 * slips) + 0.1 * kStep_m);
-  EXPECT_NEAR(lost / slipping, 0.5 * (params.least_loss + params.most_loss),
+  EXPECT_NEAR(lost / slipping, 0.5 * (params.min_loss + params.max_loss),
               kSlipSigmas * 0.08 / std::sqrt(12.0) * 1.1 / std::sqrt(1.0 * slips));
 }
 

@@ -4,12 +4,17 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <set>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include "vigia/core/config.hpp"
 
 namespace vigia {
 namespace {
@@ -40,6 +45,95 @@ TEST_F(Program, WithoutACommandIsWrongUsage) {
   EXPECT_EQ(vigia("").status, 2);
 }
 
+struct WrongUsage {
+  const char* name;
+  const char* arguments;
+  const char* message;  ///< part of what is said
+};
+
+void PrintTo(const WrongUsage& usage, std::ostream* out) {
+  *out << usage.name;
+}
+
+class WrongUsages : public Program, public ::testing::WithParamInterface<WrongUsage> {};
+
+TEST_P(WrongUsages, IsNamedWithTheNearestWordThatThereIs) {
+  const auto result = vigia(GetParam().arguments);
+  EXPECT_EQ(result.status, 2);
+  EXPECT_EQ(result.out, "");
+  EXPECT_THAT(result.err, HasSubstr(GetParam().message));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Words, WrongUsages,
+    ::testing::Values(
+        WrongUsage{"Command", "rn x.yaml",
+                   "unknown command 'rn'; did you mean 'run'? (commands: run, plan, check, "},
+        WrongUsage{"CommandLikeNone", "quixotize", "unknown command 'quixotize' (commands: run"},
+        WrongUsage{"KindOfLandmark", "landmark dsc -o x.pdf",
+                   "unknown command 'dsc'; did you mean 'disc'? (commands: disc, pattern, tag)"},
+        WrongUsage{"Option", "run x.yaml --sede=3",
+                   "unknown option '--sede'; did you mean '--seed'? (options: --help, --seed"},
+        WrongUsage{"Argument", "check a.yaml b.yaml", "'b.yaml' is one argument too many"},
+        WrongUsage{"Tracker", "track --tracker dics x.png",
+                   "found 'dics', must be one of disc, ellipse, correlation, pattern, tag; did you "
+                   "mean 'disc'?"},
+        WrongUsage{"Policy", "plan x.yaml --policy nearst",
+                   "found 'nearst', must be one of fixed, random, nearest, greedy, fuzzy, pattern; "
+                   "did you mean 'nearest'?"},
+        WrongUsage{"Topic", "help kyes", "there is no help on 'kyes'; did you mean 'keys'?"},
+        WrongUsage{"Key", "help keys planner.trigger.distanc_m",
+                   "there is no key 'planner.trigger.distanc_m'; did you mean "
+                   "'planner.trigger.distance_m'?"}),
+    [](const auto& usage) { return usage.param.name; });
+
+TEST_F(Program, ExplainsACommandOrAllOfThem) {
+  const auto all = vigia("help");
+  EXPECT_EQ(all.status, 0);
+  for (const char* word : {"run", "evaluate", "reproduce", "keys", "localizers", "policies"})
+    EXPECT_THAT(all.out, HasSubstr(word));
+  EXPECT_THAT(vigia("help plan").out, HasSubstr("--policy"));
+}
+
+TEST_F(Program, ExplainsEveryKeyThatAResolvedMissionHas) {
+  ASSERT_EQ(vigia(short_run(dir_.path() / "run")).status, 1);
+  const auto keys = nlohmann::json::parse(vigia("help keys --json").out);
+  std::set<std::string> known;
+  for (const auto& row : keys) known.insert(row["key"].get<std::string>());
+  const auto root = load_config(dir_.path() / "run/mission.yaml");
+  const std::function<void(const ConfigNode&, const std::string&)> visit =
+      [&](const ConfigNode& node, const std::string& path) {
+        EXPECT_TRUE(path.empty() || known.count(path) == 1) << path;
+        for (const auto& [key, value] : node.entries)
+          visit(*value, path.empty() ? key : path + "." + key);
+        for (const auto& item : node.items)
+          if (item->kind == ConfigNode::Kind::map)
+            for (const auto& [key, value] : item->entries) visit(*value, path + "[]." + key);
+      };
+  visit(*root, "");
+}
+
+TEST_F(Program, GivesUnitRangeAndDefaultOfAKey) {
+  const auto keys = nlohmann::json::parse(vigia("help keys world.room.height_m --json").out);
+  ASSERT_EQ(keys.size(), 1U);
+  EXPECT_EQ(keys[0]["unit"], "m");
+  EXPECT_EQ(keys[0]["range"], "0.05 … 100");
+  EXPECT_EQ(keys[0]["default"], "2.8");
+  EXPECT_THAT(vigia("help keys planner.trigger").out, HasSubstr("planner.trigger.limit_2_m"));
+}
+
+TEST_F(Program, TellsLocalizersTrackersAndPoliciesApart) {
+  EXPECT_THAT(vigia("help localizers").out, HasSubstr("dead reckoning alone"));
+  EXPECT_THAT(vigia("help trackers").out, HasSubstr("AprilTags of the family 36h11"));
+  EXPECT_THAT(vigia("help policies").out, HasSubstr("the nearest visible landmark"));
+}
+
+TEST_F(Program, HasTheTablesOfKeysThatThePagesShow) {
+  const auto result = vigia::testing::run_process(
+      std::string(VIGIA_SOURCE_DIR) + "/.ci/check-key-tables " + VIGIA_PROGRAM, dir_.path());
+  EXPECT_EQ(result.status, 0) << result.out << result.err;
+}
+
 TEST_F(Program, TellsItsVersion) {
   const auto result = vigia("--version");
   EXPECT_EQ(result.status, 0);
@@ -50,6 +144,28 @@ TEST_F(Program, ChecksTheMissionThatItComesWith) {
   const auto result = vigia("check " + kMission);
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("armingol-room"));
+}
+
+TEST_F(Program, ChecksEveryKindOfFileThatItComesWith) {
+  const std::string config = std::string(VIGIA_SOURCE_DIR) + "/config";
+  for (const auto& [file, said] :
+       {std::pair{"/missions/tag-room.yaml", "a mission, \"tag-room\""},
+        {"/worlds/mixed-room.yaml", "a world, \"mixed-room\""},
+        {"/robots/b21.yaml", "a robot, \"b21\""},
+        {"/campaigns/armingol-policies.yaml", "a campaign, \"armingol-policies\""},
+        {"/fuzzy/choice.fll", "a fuzzy rule base, with 3 inputs"}}) {
+    const auto result = vigia("check " + config + file);
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_THAT(result.out, HasSubstr(said));
+  }
+}
+
+TEST_F(Program, SaysAsWhatItCheckedAFile) {
+  const auto campaign = file("campaign.yaml", "version: 1\nname: c\nmission: none.yaml\n");
+  const auto result = vigia("check " + campaign.string());
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, HasSubstr("none.yaml"));
+  EXPECT_THAT(result.err, HasSubstr("(checked as a campaign)"));
 }
 
 TEST_F(Program, ReportsAMissionThatDidNotArriveWithStatusOneAndAWholeRunFolder) {
@@ -215,6 +331,16 @@ INSTANTIATE_TEST_SUITE_P(
         WrongMission{"NotANumber", "timeout_s=.nan", "timeout_s"},
         WrongMission{"UnknownTracker", "tracker=blob", "correlation"},
         WrongMission{"UnknownLocalizer", "localization.primary=gps", "ekf"},
+        WrongMission{"LocalizerThatDoesNotFit", "localization.primary=pattern_fix",
+                     "'pattern_fix' needs colour patterns in the world"},
+        WrongMission{"UnknownLocalizerInTheList", "localization.localizers=[ekf, odometri]",
+                     "did you mean 'odometry'"},
+        WrongMission{"LocalizerTwice", "localization.localizers=[ekf, ekf]", "before"},
+        WrongMission{"NoLocalizer", "localization.localizers=[]", "one or more of ekf, odometry"},
+        WrongMission{"PrimaryNotInTheList", "localization={localizers: [odometry], primary: ekf}",
+                     "must be one of odometry"},
+        WrongMission{"RenamedKey", "planner.fuzzy.least_value=0.5",
+                     "'planner.fuzzy.least_value' is now 'planner.fuzzy.min_value'"},
         WrongMission{"LimitsReversed", "planner.trigger={limit_1_m: 0.2, limit_2_m: 0.1}", "0.1"},
         WrongMission{"ListForMap", "planner=[1, 2]", "planner"},
         WrongMission{"MissingWorld", "world=nowhere.yaml", "nowhere.yaml"},

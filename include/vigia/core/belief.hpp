@@ -37,6 +37,9 @@ struct Belief {
   BeliefStatus status = BeliefStatus::tracking;
   std::vector<PoseHypothesis> hypotheses;  ///< empty unless ambiguous
   std::optional<SpatialPose> in_space;     ///< from methods that measure it
+  /// Probability of being lost, by the localizer's own evidence: that the position is off by more
+  /// than half a metre or four times the claimed σ. Not calibrated unless the localizer says so.
+  double lost_probability = 0.0;
 
   /// √λ_max of the position covariance, metres: what the uncertainty limits compare.
   double position_sigma() const;
@@ -47,5 +50,8 @@ struct Prior {
   Pose2 pose;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
+
+/// The prior of a robot that may be anywhere: σ of 100 m and of half a turn.
+Prior anywhere();
 
 }  // namespace vigia

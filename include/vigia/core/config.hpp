@@ -105,6 +105,9 @@ class MapReader {
 
   /// A list of texts.
   std::vector<std::string> texts(const std::string& key);
+  /// A list of some of @p known, at least one and each once.
+  std::vector<std::string> names(const std::string& key, const std::vector<std::string>& known,
+                                 const std::vector<std::string>& fallback);
 
   /// A map below this one; absent it reads as empty, and is created when something is resolved.
   MapReader map(const std::string& key);

@@ -21,6 +21,15 @@ struct GazeOrder {
   std::optional<double> zoom_mm;
 };
 
+/// What an eye is asked to do with a capture.
+enum class TrackRequest { none, acquire, track };
+
+/// What an attention asks of the eye that it directs.
+struct GazeRequest {
+  LandmarkId landmark = 0;
+  TrackRequest track = TrackRequest::acquire;
+};
+
 /// What the gaze does now.
 enum class GazeState { idle, slew, acquire, track, lost, search };
 

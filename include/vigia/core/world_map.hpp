@@ -9,16 +9,21 @@
 
 namespace vigia {
 
+class ParamVisitor;
+
 /// What the robot knows of the building: plan, ground and landmarks.
 struct WorldMap {
-  std::string name;
+  std::string name = "world";
   FloorPlan plan;
   Ground ground;
   LandmarkMap landmarks;
 };
 
-/// Reads the keys `name`, `room`, `walls`, `obstacles`, `landmarks` of a world file. Throws
+/// The keys `name`, `room`, `walls`, `obstacles`, `landmarks` of a world file. A reader throws
 /// InputError: a landmark inside a wall or outside the room, off every face, overlapping ids, …
+void describe(ParamVisitor& v, WorldMap& world);
+
+/// Reads them; the reader stays the caller's to finish.
 WorldMap read_world_map(MapReader& reader);
 
 }  // namespace vigia

@@ -7,6 +7,10 @@
 
 #include "vigia/mission/setup.hpp"
 
+namespace vigia {
+struct KeyRow;
+}
+
 namespace vigia::evaluation {
 
 /// One way to drive the campaign's mission. Every arm drives it with the same seeds, and each
@@ -30,12 +34,11 @@ struct Campaign {
   std::size_t missions() const { return arms.size() * static_cast<std::size_t>(seeds); }
 };
 
-/// Reads a campaign file: `name`, `mission` (relative to the file), `seeds: {first, count}`, the
-/// lists `policies`, `localizers`, `disturbances` and `variants: [{name, set: [key=value, …]}]`,
-/// each of which multiplies the arms, `set` for all of them, and `baseline`, an arm's name. A
-/// disturbance is the name of a key below the mission's `disturbances`, which it sets to
-/// `realistic` with all others off; `none` has all of them off. @p overrides apply last, to every
-/// arm. Throws InputError with the place in the campaign file.
+/// The reference of a campaign's keys.
+std::vector<KeyRow> campaign_keys();
+
+/// Reads a campaign file (see campaign_keys()): each of its lists multiplies the arms. @p overrides
+/// apply last, to every arm. Throws InputError with the place in the campaign file.
 Campaign read_campaign(const std::filesystem::path& file,
                        const std::vector<std::string>& overrides = {});
 

@@ -2,56 +2,12 @@
 
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
-#include <vector>
 
+#include "vigia/evaluation/estimator_score.hpp"
 #include "vigia/mission/listener.hpp"
 
 namespace vigia::evaluation {
-
-/// A localizer's estimate at the last fused reading of one look.
-struct LookScore {
-  LookId look = 0;
-  double nees = 0.0;              ///< of (x, y, θ), 3 degrees of freedom
-  double squared_error_m2 = 0.0;  ///< of the position
-  double bound_m2 = 0.0;          ///< trace of the bound's position covariance
-};
-
-/// A time during which a localizer was lost: from when it said so or its error passed kLost_m,
-/// whichever came first, until it tracks again with an error of less than half of that.
-struct LostEpisode {
-  /// An error of the position that nobody would call localized, m.
-  static constexpr double kLost_m = 0.5;
-
-  std::optional<double> said_s;    ///< when its belief's status became lost
-  std::optional<double> passed_s;  ///< when its error passed kLost_m
-  std::optional<double> ended_s;
-  double began_s() const;
-  /// Whether it had said so by the time the error passed kLost_m, if it ever did.
-  bool announced() const { return said_s && (!passed_s || *said_s <= *passed_s); }
-};
-
-/// One localizer on one drive. Means are over the ticks of the drive.
-struct LocalizerScore {
-  double position_final_m = 0.0;
-  double position_rmse_m = 0.0;
-  double position_max_m = 0.0;
-  double heading_final_rad = 0.0;
-  double heading_rmse_rad = 0.0;
-  double nees_mean = 0.0;
-  double pcrlb_position_rms_m = 0.0;  ///< √ of the mean trace of the posterior Cramér–Rao bound
-  /// Mean size of a Gaussian error whose covariance is the bound's at the end of the drive: what
-  /// position_final_m and heading_final_rad would be on average at the bound.
-  double pcrlb_position_final_m = 0.0;
-  double pcrlb_heading_final_rad = 0.0;
-  int updates = 0;
-  int rejected = 0;  ///< gated, ambiguous, degenerate or too late
-  int unsupported = 0;
-  double lost_s = 0.0;
-  std::vector<LostEpisode> lost;
-  std::vector<LookScore> looks;
-};
 
 struct PerceptionScore {
   int looks = 0;
@@ -84,8 +40,8 @@ struct DriveScore {
   RecoveryScore recovery;
 };
 
-/// Scores a drive while it runs: errors against the truth, consistency, and the posterior
-/// Cramér–Rao bound along the executed looks, linearised at the true state.
+/// Scores a drive while it runs: its localizers by an EstimatorScorer each, and what the
+/// pan-tilt-zoom attention and the recovery did.
 class DriveScorer : public mission::Listener {
  public:
   /// Centring counts from this long after a target was acquired.
@@ -94,7 +50,7 @@ class DriveScorer : public mission::Listener {
   DriveScorer();
   ~DriveScorer() override;
 
-  void on_start(const mission::MissionSetup& setup, std::uint64_t seed) override;
+  void on_start(const mission::MissionStart& start) override;
   void on_tick(const mission::Tick& tick) override;
   void on_event(const mission::Event& event) override;
   void on_finish(mission::Outcome outcome, Stamp end) override;

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include <Eigen/Core>
 
 #include "vigia/core/landmark.hpp"
@@ -10,8 +8,7 @@
 #include "vigia/core/pose.hpp"
 #include "vigia/core/rig.hpp"
 #include "vigia/core/sensor_noise.hpp"
-#include "vigia/localization/disc_model.hpp"
-#include "vigia/localization/points_model.hpp"
+#include "vigia/localization/measurement_model.hpp"
 
 namespace vigia::evaluation {
 
@@ -30,18 +27,12 @@ class PosteriorBound {
   void predict(const Pose2& truth, const OdometryIncrement& increment,
                const Eigen::Matrix3d& control);
 
-  /// Takes in one image of a disc: @p truth the pose at the exposure, @p sensor with the encoder's
-  /// readings, @p bias the true errors of the look's readings, @p R the covariance of (u, v, s)
-  /// in the image (the white part of the readings is added here). False, and nothing changed, when
-  /// the disc has no image from there.
-  bool update(const Pose2& truth, const Landmark& landmark, const Shot& shot,
-              const localization::LookBias& bias, const Eigen::Matrix3d& R);
-
-  /// Takes in one image of a pattern or tag, of which @p points were seen (their covariances count,
-  /// not their pixels).
-  bool update(const Pose2& truth, const Landmark& landmark, const Shot& shot,
-              const localization::LookBias& bias,
-              const std::vector<localization::SeenPoint>& points);
+  /// Updates by one image of @p landmark, which it truly shows: @p truth the pose at the exposure,
+  /// @p bias the true errors of the look's readings. Of the observation its readings and its
+  /// covariance count, not its pixels. False, and nothing changed, when the landmark has no image
+  /// from there.
+  bool update(const Pose2& truth, const localization::LookBias& bias, const Landmark& landmark,
+              const Observation& observation);
 
   /// The bound on the covariance of (x, y, θ).
   Eigen::Matrix3d covariance() const { return P_.topLeftCorner<3, 3>(); }
@@ -49,8 +40,7 @@ class PosteriorBound {
  private:
   void begin_look(LookId look);
 
-  RigOnGround on_ground_;
-  SensorNoise noise_;
+  localization::MeasurementModel model_;
   LookId look_ = 0;
   Eigen::Matrix<double, 6, 6> P_ = Eigen::Matrix<double, 6, 6>::Zero();
 };

@@ -17,9 +17,11 @@ struct LocalizerStatistics {
   Estimate position_max;
   double bound_rms = 0.0;  ///< √ of the mean trace of the posterior Cramér–Rao bound
   Estimate pcrlb_ratio;
-  double nees_per_dof = 0.0;   ///< mean over time and seeds
-  double anees_in_band = 0.0;  ///< share of the looks at which ANEES lies in its 95 % band
-  std::vector<double> anees;   ///< per dof, at the end of each look that every seed made
+  double nees_per_dof = 0.0;        ///< mean over time and seeds
+  double anees_in_band = 0.0;       ///< share of the looks at which ANEES lies in its 95 % band
+  std::vector<double> anees;        ///< per dof, at the end of each look that every seed made
+  LossScore loss;                   ///< of all drives together: sums, and means of what are means
+  Interval right_recoveries_share;  ///< Clopper–Pearson, 95 %; [0, 1] without recoveries
 };
 
 /// What became of a localizer's getting lost (see LostEpisode), over all drives.

@@ -4,13 +4,14 @@
 #include <deque>
 #include <optional>
 #include <set>
-#include <variant>
+#include <utility>
 #include <vector>
 
 #include "vigia/core/floor_plan.hpp"
-#include "vigia/localization/ekf_state.hpp"
 #include "vigia/localization/localizer.hpp"
+#include "vigia/localization/look_input.hpp"
 #include "vigia/localization/mean_speed.hpp"
+#include "vigia/localization/measurement_model.hpp"
 
 namespace vigia::localization {
 
@@ -52,9 +53,9 @@ struct EkfParams {
   double nis_probability = 1e-5;
 };
 
-/// Extended Kalman filter on planar pose and per-look reading errors (see EkfState), after Armingol
-/// §5 with the errata's motion and measurement models: predict, predict the measurement of every
-/// landmark, match by likelihood within a gate, iterated update in Joseph's form.
+/// Extended Kalman filter on planar pose and per-look reading errors (see LookState), after
+/// Armingol §5 with the errata's motion and measurement models: predict, predict the measurement of
+/// every landmark, match by likelihood within a gate, iterated update in Joseph's form.
 ///
 /// Observations may be late: the filter goes back to the exposure (splitting an increment where
 /// needed), updates, and repeats what came after. An observation ahead of the odometry is fused at
@@ -63,6 +64,12 @@ struct EkfParams {
 /// Discs look all alike: the landmark that a look expects has no privilege over any other. Patterns
 /// and tags say who they are: their points are gated against that landmark alone. What is gated,
 /// ambiguous or otherwise not fused is counted.
+///
+/// It cannot start without a prior. Belief::lost_probability joins three pieces of evidence, each
+/// taken for independent: that a Gaussian error of the claimed σ exceeds half a metre; the
+/// unexplained images in a row, even odds where lost_rejections is reached; and the NIS of the last
+/// looks' first images, α / (α + q) with q its tail probability and α = nis_probability. Once it
+/// has said that it is lost the probability is 0.99.
 class EkfLocalizer final : public Localizer {
  public:
   /// @p plan, when given, rules out landmarks behind walls.
@@ -70,7 +77,7 @@ class EkfLocalizer final : public Localizer {
                std::optional<FloorPlan> plan = std::nullopt);
 
   std::string_view name() const override { return "ekf"; }
-  void reset(Stamp stamp, const Prior& prior) override;
+  void reset(Stamp stamp, const std::optional<Prior>& prior) override;
   void predict(const OdometryIncrement& increment) override;
   UpdateResult update(const Observation& observation) override;
   const Belief& belief() const override { return belief_; }
@@ -79,12 +86,12 @@ class EkfLocalizer final : public Localizer {
   /// How many updates ended with this status since the construction.
   int count(UpdateStatus status) const { return counts_[static_cast<std::size_t>(status)]; }
   /// The whole state, biases included, at the belief's stamp.
-  const EkfState& state() const { return events_.empty() ? base_ : events_.back().after; }
+  const LookState& state() const { return events_.empty() ? base_ : events_.back().after; }
 
  private:
   /// The last events, from a state on: those of the present look, linearised anew together.
   struct Window {
-    EkfState start;
+    LookState start;
     std::size_t events = 0;  ///< 0: no look is under way
     int images = 0;
     Stamp last_image;
@@ -93,53 +100,44 @@ class EkfLocalizer final : public Localizer {
   /// Values never change once appended: what comes of an observation depends on the sequence of
   /// inputs up to it alone, not on the order in which they arrived.
   struct Event {
-    EkfInput input;
+    LookInput input;
     bool extrapolated = false;
-    EkfState after;
+    LookState after;
     Window window;
   };
 
-  /// What an image turned out to be, and how it is fused.
-  struct Match {
-    UpdateResult result;
-    std::optional<EkfInput> fix;
-  };
-
-  UpdateResult take_in(const Observation& observation);
-  Match match(const EllipseObservation& observation, const EkfState& at) const;
-  Match match(const PointsObservation& observation, const EkfState& at) const;
-  void append(const EkfInput& input, bool extrapolated = false);
+  UpdateResult process(const Observation& observation);
+  void append(const LookInput& input, bool extrapolated = false);
   void move_by(const Motion& motion, Event& event) const;
   void fuse(const Shot& shot, Event& event) const;
-  std::vector<const EkfInput*> inputs_of_look(const Event& event) const;
+  std::vector<const LookInput*> inputs_of_look(const Event& event) const;
   std::vector<Vector6> guess_of_look(const Event& event) const;
-  EkfState with_look(const EkfState& state, LookId look) const;
+  LookState with_look(const LookState& state, const Shot& shot) const;
   std::vector<Event> roll_back(Stamp stamp);
   void extrapolate(Stamp stamp);
-  std::vector<EkfInput> drop_extrapolated();
+  std::vector<LookInput> drop_extrapolated();
   void forget_old();
-  void watch_innovations(const UpdateResult& result, LookId look, bool first_of_look);
-  bool innovations_are_unlikely() const;
+  void monitor_innovations(const UpdateResult& result, LookId look, bool first_of_look);
+  /// Σ NIS of the first images of the last looks and its degrees of freedom.
+  std::pair<double, int> innovations_of_looks() const;
   void refresh_belief();
-  Eigen::Matrix3d measurement_covariance(const EllipseObservation& observation) const;
 
-  LandmarkMap map_;
-  RigOnGround on_ground_;
   EkfParams params_;
-  std::optional<FloorPlan> plan_;
-  double gate_;
+  MeasurementModel model_;
   std::vector<double> nis_limits_;  ///< by the degrees of freedom of the sum
 
   MeanSpeed mean_speed_;
-  EkfState base_;             ///< before the first of events_
+  LookState base_;            ///< before the first of events_
   std::deque<Event> events_;  ///< in order of time
   Stamp horizon_;             ///< what is older comes too late
   Belief belief_;
 
-  std::array<int, 6> counts_{};
+  std::array<int, kUpdateStatuses> counts_{};
   int rejections_ = 0;
   std::set<LookId> rejected_looks_;
   std::deque<UpdateResult> first_of_looks_;  ///< the first fused image of each of the last looks
+  double innovation_evidence_ = 0.0;         ///< that it is lost, by those
+  bool has_prior_ = false;
   bool said_lost_ = false;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string_view>
 
@@ -18,7 +19,9 @@ enum class UpdateStatus {
   degenerate,   ///< the model has no image there (behind the camera, edge on)
   too_late,     ///< older than the odometry history
   unsupported,  ///< a kind that this localizer does not use
+  no_prior,     ///< it has no idea where it is and cannot find out by itself
 };
+inline constexpr std::size_t kUpdateStatuses = 7;
 
 std::string_view to_string(UpdateStatus status);
 
@@ -35,12 +38,14 @@ class Localizer {
  public:
   virtual ~Localizer() = default;
   virtual std::string_view name() const = 0;
-  /// Begins anew at @p stamp.
-  virtual void reset(Stamp stamp, const Prior& prior) = 0;
+  /// Begins anew at @p stamp, from the prior or without one. Without, a localizer that can find
+  /// itself is `lost` until it has; another stays so, and its updates end with `no_prior`.
+  virtual void reset(Stamp stamp, const std::optional<Prior>& prior) = 0;
   virtual void predict(const OdometryIncrement& increment) = 0;
   virtual UpdateResult update(const Observation& observation) = 0;
   virtual const Belief& belief() const = 0;
-  /// Perception says that what the belief predicts is not there: lost until the next reset().
+  /// Perception says that what the belief predicts is not there: lost until the next reset(), or
+  /// until a localizer that can find itself has.
   virtual void lose() = 0;
 };
 

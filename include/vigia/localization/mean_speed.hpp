@@ -17,7 +17,7 @@ class MeanSpeed {
   void reset() { recent_.clear(); }
 
   /// @p increment, which follows the one of the last call, with the distance at the mean speed.
-  OdometryIncrement even(const OdometryIncrement& increment);
+  OdometryIncrement at_mean_speed(const OdometryIncrement& increment);
 
  private:
   double speed() const;

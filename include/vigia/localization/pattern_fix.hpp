@@ -23,6 +23,8 @@ struct PatternFixParams {
 /// robot's whole pose in space and replaces what was believed before; between the looks it holds
 /// with odometry. The planar belief is that pose seen from above.
 ///
+/// It needs no prior: lost, it is found by the next pattern that it fuses.
+///
 /// Results of update(): `fused`; `gated` when the pattern is not of the map or its dots scatter
 /// more than their noise; `degenerate` for too few dots or a frontal view (φ < 25°); `ambiguous`
 /// when view and twin explain the dots alike and both stand upright; `unsupported` for discs and
@@ -33,17 +35,17 @@ class PatternFixLocalizer final : public Localizer {
                       const PatternFixParams& params);
 
   std::string_view name() const override { return "pattern_fix"; }
-  void reset(Stamp stamp, const Prior& prior) override;
+  void reset(Stamp stamp, const std::optional<Prior>& prior) override;
   void predict(const OdometryIncrement& increment) override;
   UpdateResult update(const Observation& observation) override;
   const Belief& belief() const override { return belief_; }
-  void lose() override { belief_.status = BeliefStatus::lost; }
+  void lose() override;
 
   /// How many updates ended with this status since the construction.
   int count(UpdateStatus status) const { return counts_[static_cast<std::size_t>(status)]; }
 
  private:
-  UpdateResult take_in(const PointsObservation& observation);
+  UpdateResult process(const PointsObservation& observation);
   const FittedPose* upright(const PointsPose& solved, const Landmark& landmark,
                             const Shot& shot) const;
   void believe(const SpatialPose& pose, Stamp stamp);
@@ -54,7 +56,7 @@ class PatternFixLocalizer final : public Localizer {
   Belief belief_;
   Stamp start_;
   std::deque<OdometryIncrement> history_;
-  std::array<int, 6> counts_{};
+  std::array<int, kUpdateStatuses> counts_{};
 };
 
 }  // namespace vigia::localization

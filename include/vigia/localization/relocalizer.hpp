@@ -10,6 +10,7 @@
 #include "vigia/core/observation.hpp"
 #include "vigia/core/rig.hpp"
 #include "vigia/core/sensor_noise.hpp"
+#include "vigia/localization/measurement_model.hpp"
 
 namespace vigia::localization {
 
@@ -71,7 +72,7 @@ class Relocalizer {
   Relocalization solve(const Sweep& sweep, const std::optional<Prior>& prior = std::nullopt) const;
 
  private:
-  struct Match {
+  struct Sighting {
     const EllipseObservation* sighting;
     const Landmark* landmark;
   };
@@ -82,30 +83,29 @@ class Relocalizer {
   };
   struct Hypothesis {
     Fit fit;
-    std::vector<Match> matches;
+    std::vector<Sighting> matches;
     double log_weight = 0.0;
   };
 
   std::vector<Pose2> seeds(const std::vector<EllipseObservation>& sightings,
                            const std::optional<Prior>& prior) const;
-  std::optional<Fit> refine(const Pose2& start, const std::vector<Match>& matches,
+  std::optional<Fit> refine(const Pose2& start, const std::vector<Sighting>& matches,
                             const std::optional<Prior>& prior) const;
-  std::vector<Match> explain(const Fit& fit,
-                             const std::vector<EllipseObservation>& sightings) const;
+  std::vector<Sighting> explain(const Fit& fit,
+                                const std::vector<EllipseObservation>& sightings) const;
   std::optional<Hypothesis> hypothesis(const Pose2& seed, const Sweep& sweep,
                                        const std::vector<EllipseObservation>& sightings,
                                        const std::optional<Prior>& prior) const;
-  static std::set<LandmarkId> landmarks_of(const std::vector<Match>& matches);
-  bool plausible(const Match& match, const Pose2& pose) const;
+  static std::set<LandmarkId> landmarks_of(const std::vector<Sighting>& matches);
+  bool plausible(const Sighting& match, const Pose2& pose) const;
   int missed(const Hypothesis& hypothesis, const Sweep& sweep) const;
   bool should_be_seen(const Landmark& landmark, const Pose2& pose, const Shot& view) const;
-  Eigen::Matrix3d pixel_covariance(const EllipseObservation& sighting) const;
+  std::optional<Linearised<3>> linearised(const Sighting& match, const Pose2& pose) const;
 
-  LandmarkMap map_;
-  FloorPlan plan_;
-  RigOnGround on_ground_;
   RelocalizerParams params_;
-  double gate_;
+  MeasurementModel model_;
+  FloorPlan plan_;
+  Eigen::Matrix3d biases_;  ///< covariance of a look's biases
 };
 
 }  // namespace vigia::localization

@@ -18,7 +18,7 @@ class RunFolder : public Listener {
   explicit RunFolder(const std::filesystem::path& folder);
   ~RunFolder() override;
 
-  void on_start(const MissionSetup& setup, std::uint64_t seed) override;
+  void on_start(const MissionStart& start) override;
   void on_tick(const Tick& tick) override;
   void on_event(const Event& event) override;
   void on_finish(Outcome outcome, Stamp end) override;

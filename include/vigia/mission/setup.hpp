@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "vigia/core/belief.hpp"
+#include "vigia/core/noise_model.hpp"
 #include "vigia/core/world_map.hpp"
+#include "vigia/localization/bearing_only.hpp"
 #include "vigia/localization/ekf.hpp"
 #include "vigia/pilot/pilot_params.hpp"
 #include "vigia/planner/look_trigger.hpp"
@@ -17,6 +19,10 @@
 #include "vigia/planner/visibility.hpp"
 #include "vigia/servo/gaze_controller.hpp"
 #include "vigia/sim/simulator.hpp"
+
+namespace vigia {
+struct KeyRow;
+}
 
 namespace vigia::mission {
 
@@ -56,10 +62,10 @@ struct MissionSetup {
   sim::RobotSetup robot;
   sim::DisturbanceParams disturbances;  ///< of the world, which nobody but the simulator knows
 
-  Pose2 start;                 ///< true start
-  Prior prior;                 ///< what the localizers are told of it
-  double start_sigma_m = 0.0;  ///< the true start is drawn round `start` with these
-  double start_sigma_rad = 0.0;
+  Pose2 start;                  ///< true start
+  std::optional<Prior> prior;   ///< what the localizers are told of it, if anything
+  double start_sigma_m = 0.01;  ///< the true start is drawn round `start` with these
+  double start_sigma_rad = from_deg(0.2);
 
   std::vector<Eigen::Vector2d> waypoints;  ///< start, vias, goal
   planner::RouteParams route;
@@ -72,7 +78,9 @@ struct MissionSetup {
   std::string tracker = "disc";
   std::vector<std::string> localizers;
   std::string primary = "ekf";
+  NoiseModel noise;  ///< what the robot believes of its sensors
   localization::EkfParams ekf;
+  localization::BearingOnlyParams bearing_only;
   LookParams look;
   servo::GazeParams gaze;
   pilot::PilotParams pilot;
@@ -86,6 +94,9 @@ struct MissionSetup {
   /// What places the robot's cameras in the world, as the robot knows it.
   RigOnGround on_ground() const { return {robot.rig(), world.ground}; }
 };
+
+/// The reference of a mission's keys, with those of its world and robot.
+std::vector<KeyRow> mission_keys();
 
 /// Reads and validates a mission file with command-line overrides ("key.path=value"), and plans its
 /// route. Throws InputError: anything wrong in the files, a start in an obstacle, no route, ….

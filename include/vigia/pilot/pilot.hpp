@@ -45,8 +45,8 @@ struct PilotOutput {
   PilotStatus status = PilotStatus::driving;
   Activations activations;
   double station_m = 0.0;
-  /// What stands nearest ahead in the robot's way along the path, when something unknown does.
-  std::optional<Eigen::Vector2d> in_the_way;
+  /// The unknown obstacle that blocks the path nearest ahead, if any.
+  std::optional<Eigen::Vector2d> obstacle_ahead;
 };
 
 /// Drives the base along a path and round what stands in it, after the AFREB architecture (Salichs,

@@ -24,7 +24,7 @@ struct AvoidanceParams {
   double wall_m = 0.06;      ///< kept from the known walls off the path
   double lane_m = 0.15;      ///< between two lanes beside the path
   double widest_m = 1.2;     ///< the outermost lane
-  double horizon_m = 3.0;    ///< of the way round
+  double horizon_m = 3.0;    ///< of the detour
   double speed = 0.22;       ///< m/s off the path
   double patience_s = 1.5;   ///< waited for somebody to pass before they are driven round
   double brake_m = 0.10;     ///< left before an unknown thing when the robot has stopped

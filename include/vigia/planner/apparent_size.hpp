@@ -15,8 +15,8 @@ double wanted_radius(const Landmark& landmark, const HeadModel& head);
 /// zoom goes.
 double zoom_for(const Landmark& landmark, double range_m, const HeadModel& head);
 
-/// Narrow width in the image, px, of what must be told apart at @p focal_px: a pattern's ring dot
-/// or a tag's field, foreshortened by the view angle (rad). Nothing for a disc.
+/// Narrow width in the image, px, of what must be distinguished at @p focal_px: a pattern's ring
+/// dot or a tag's field, foreshortened by the view angle (rad). Nothing for a disc.
 std::optional<double> feature_width(const Landmark& landmark, double range_m, double view_angle,
                                     double focal_px);
 

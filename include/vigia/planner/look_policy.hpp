@@ -10,6 +10,7 @@
 #include "vigia/core/belief.hpp"
 #include "vigia/core/information.hpp"
 #include "vigia/core/landmark.hpp"
+#include "vigia/core/name_table.hpp"
 #include "vigia/core/odometry.hpp"
 #include "vigia/core/path.hpp"
 #include "vigia/core/random.hpp"
@@ -33,7 +34,7 @@ struct LookContext {
   const HeadModel& head_model;
   double speed_mps = 0.0;         ///< of the base, now
   bool standing = false;          ///< the robot has stopped in order to look
-  const OdometryNoise& odometry;  ///< how the covariance grows on the way
+  const OdometryNoise& odometry;  ///< how the covariance grows until then
 };
 
 /// What a policy has chosen.
@@ -41,17 +42,17 @@ struct LookChoice {
   LandmarkId landmark = 0;
   std::optional<double> zoom_mm = {};      ///< planned; nothing: by the landmark's size
   std::optional<double> suitability = {};  ///< in [0, 1], when the policy has such a measure
-  std::string reason = {};                 ///< for the story, a few words
+  std::string reason = {};                 ///< for the event log, a few words
 };
 
-/// Chooses which landmark to watch next.
+/// Chooses which landmark to look at next.
 class LookPolicy {
  public:
   virtual ~LookPolicy() = default;
   virtual std::string_view name() const = 0;
   /// The landmark to look at from where the robot believes to be, or nothing when none will do.
   virtual std::optional<LookChoice> choose(const LookContext& context) = 0;
-  /// The robot follows this path from now on; told before the first choice.
+  /// The robot follows this path from now on; called before the first choice.
   virtual void follow(const Path& /*path*/) {}
   /// Whether head and zoom wait, between two looks, where the policy would look now.
   virtual bool prepares() const { return false; }
@@ -69,15 +70,17 @@ struct LookPolicyParts {
   PerceptionParams perception = {};
 };
 
-/// "fixed", "random" (visible ones), "nearest" (visible), "greedy" (least expected trace of the
-/// position's covariance after the look), "fuzzy" (the perception plan of Armingol et al.) or
-/// "pattern" (QUIXOTE's three criteria). Null for another name.
+struct LookPolicyEntry : NameEntry {
+  std::unique_ptr<LookPolicy> (*make)(const LookPolicyParts& parts);
+};
+
+/// Every policy.
+const std::vector<LookPolicyEntry>& look_policies();
+
+/// The policy of that name; null for a name that the table has not.
 std::unique_ptr<LookPolicy> make_look_policy(const std::string& name, const LookPolicyParts& parts);
 
-/// The names that make_look_policy knows.
-std::vector<std::string> look_policy_names();
-
 /// Whether a landmark is visible from @p pose and not excluded.
-bool can_be_watched(const Landmark& landmark, const LookContext& context, const Pose2& pose);
+bool can_be_observed(const Landmark& landmark, const LookContext& context, const Pose2& pose);
 
 }  // namespace vigia::planner

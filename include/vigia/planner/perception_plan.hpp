@@ -19,14 +19,14 @@ struct PerceptionParams {
   double reject = 0.25;  ///< a landmark of less suitability is rejected
   /// In motion, the best preselected landmark is taken when its value (both supervisors' product)
   /// is at least this share of the best visible one's.
-  double least_value = 0.9;
+  double min_value = 0.9;
   /// Standing, landmarks along both axes are taken in turn while both axes' σ exceed this.
   double both_uncertain_m = 0.05;
   double zoom_cost_per_s = 0.2;  ///< suitability that a second of the zoom's travel outweighs
   /// The margin that needs no optics move at the area's zoom. Discs by their radius:
-  double least_radius_px = 10.0;
-  double most_radius_px = 80.0;
-  double least_feature_px = 5.0;  ///< points by feature_width(); at most the image takes them
+  double min_radius_px = 10.0;
+  double max_radius_px = 80.0;
+  double min_feature_px = 5.0;  ///< points by feature_width(); at most the image takes them
 };
 
 /// What the plan knows of a landmark in a control area.
@@ -37,7 +37,7 @@ struct LandmarkStudy {
   double suitability = 0.0;    ///< mean over the control positions; 0 where it is not usable
   double nearest_m = 0.0;      ///< over the control positions that see it
   double farthest_m = 0.0;
-  double most_oblique = 0.0;  ///< view angle, rad
+  double max_view_angle = 0.0;  ///< rad
   /// Zoom group that its distances belong to most; each kind and size of landmark has groups of its
   /// own.
   std::size_t group = 0;
@@ -71,7 +71,7 @@ struct PerceptionPlan {
 /// axis. At its group's distance a disc has the wanted size; a pattern or tag is so much smaller
 /// that one nearer by the root of distance_ratio fills the image. Preselected are the most suitable
 /// landmark of the group, and those most suitable to reduce the uncertainty along x and along y
-/// that can be watched without an optics move.
+/// that can be observed without an optics move.
 PerceptionPlan plan_perception(const Path& path, const LandmarkMap& landmarks,
                                const Visibility& visibility, const HeadModel& head,
                                FuzzySupervisors& supervisors, const PerceptionParams& params);

@@ -29,7 +29,7 @@ struct Route {
 };
 
 /// A route through @p waypoints (start, vias, goal) that keeps robot_radius_m + clearance_m from
-/// every face and every one of @p others (what stands in the building's way beyond its plan),
+/// every face and every one of @p others (obstacles that the plan does not have),
 /// planned leg by leg with OMPL; the same seed gives the same route. Others that reach into the
 /// robot at its start count as far as they leave it room: where the robot stands, nothing else is.
 Route plan_route(const FloorPlan& plan, const std::vector<Eigen::Vector2d>& waypoints,

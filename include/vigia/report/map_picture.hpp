@@ -19,7 +19,7 @@ struct MapPose {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
 
-/// One look: the landmark that was watched, from where, and whether the localizer used it.
+/// One look: the landmark that was tracked, from where, and whether the localizer used it.
 struct MapLook {
   LandmarkId landmark = 0;
   Eigen::Vector2d from = Eigen::Vector2d::Zero();  ///< the true position in the middle of the look

@@ -26,14 +26,11 @@ struct GazeParams {
   double search_radius_px = 10.0;  ///< searching, the zoom widens until the landmark is this small
   double aim_gain = 10.0;          ///< 1/s, of the slew's final approach
   double motion_horizon_s = 1.0;   ///< the base's motion is foreseen for at most this long
-  double planned_least_px = 8.0;   ///< a planned zoom stays while the landmark is this large …
-  double planned_most = 0.5;       ///< … and at most this part of half the image's smaller side
+  double planned_min_px = 8.0;     ///< a planned zoom stays while the landmark is this large …
+  double planned_max = 0.5;        ///< … and at most this part of half the image's smaller side
   /// σ of the head's angles, for the zoom at which the landmark is still inside the image.
-  double look_angle_deg = 0.3;
+  double look_angle = from_deg(0.3);
 };
-
-/// What the tracker is asked to do with the next frame.
-enum class TrackRequest { none, acquire, track };
 
 /// The tracker's answer to the last request, in pixels.
 struct GazeSighting {
@@ -77,7 +74,7 @@ struct GazeOutput {
 ///
 /// From acquire and lost the gaze returns to slew when the aim is farther than half the field from
 /// the head (the pan's stop lies between, or the belief has jumped). In every state but track and
-/// idle the order's expiry ends it. Found again after a loss, a landmark is watched for the whole
+/// idle the order's expiry ends it. Found again after a loss, a landmark is tracked for the whole
 /// dwell_s anew.
 class GazeController {
  public:
@@ -125,7 +122,7 @@ class GazeController {
   GazeOutput slew(const GazeInput& input, const Aim& aim);
   GazeOutput hold(const GazeInput& input, const Aim& aim);
   GazeOutput search(const GazeInput& input, const Landmark& landmark, const Aim& aim);
-  GazeOutput watch(const GazeInput& input, const Landmark& landmark);
+  GazeOutput track(const GazeInput& input, const Landmark& landmark);
   GazeOutput miss(const GazeInput& input, const Aim& aim);
 
   HeadRates drive(const GazeInput& input, const Aim& aim, const HeadAngles& goal,

@@ -39,6 +39,7 @@ struct Appearance {
   double plate_grey = 210.0;
   double plate_factor = 1.6;  ///< half the sheet's width over the disc's radius
   PlateShape plate_shape = PlateShape::square;
+  double clutter_per_m2 = 0.25;  ///< marks scattered over walls and floor
   std::vector<Clutter> clutter;  ///< named in the file and drawn at random
 };
 

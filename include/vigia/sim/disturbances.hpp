@@ -12,12 +12,14 @@ namespace vigia::sim {
 /// The frame is the mean over the camera's motion while the shutter is open.
 struct MotionBlurParams {
   double exposure_s = 0.01;
-  int most_instants = 16;  ///< of which the mean is taken, at most
+  int max_instants = 16;  ///< of which the mean is taken, at most
 };
 
-/// A frame is delivered late.
+/// A frame is delivered late, and what is seen in it is known later still.
 struct LatencyParams {
   double latency_s = 0.08;  ///< from the middle of the exposure
+  double processing_s =
+      0.0;  ///< that a frame takes; one that arrives meanwhile waits, or is dropped
 };
 
 /// The light's gain varies over the room and in time.
@@ -52,11 +54,11 @@ struct BacklashParams {
 
 /// The wheels do not report what the base does.
 struct WheelSlipParams {
-  double per_m = 0.15;   ///< slips that begin per metre driven
-  double least_m = 0.1;  ///< length of a slip
-  double most_m = 0.4;
-  double least_loss = 0.02;  ///< share of the way that is lost during a slip
-  double most_loss = 0.10;
+  double per_m = 0.15;  ///< slips that begin per metre driven
+  double min_m = 0.1;   ///< length of a slip
+  double max_m = 0.4;
+  double min_loss = 0.02;  ///< share of the way that is lost during a slip
+  double max_loss = 0.10;
   double skew_per_m = from_deg(3.0);  ///< σ of the turn during a slip, rad per metre
   double diameter = 0.005;            ///< σ of the relative error of the wheels' diameter
   double base = 0.005;                ///< σ of the relative error of the wheel base
@@ -95,7 +97,7 @@ struct ClutterParams {
 struct KidnappingParams {
   double earliest_s = 15.0;
   double latest_s = 60.0;
-  double least_m = 1.5;  ///< from where it was
+  double min_m = 1.5;  ///< from where it was
 };
 
 /// Which disturbances are on. Everything is off by default.

@@ -7,7 +7,6 @@
 #include <Eigen/Core>
 
 #include "vigia/core/angle.hpp"
-#include "vigia/core/config.hpp"
 #include "vigia/core/floor_plan.hpp"
 #include "vigia/core/pose.hpp"
 #include "vigia/core/random.hpp"
@@ -53,8 +52,5 @@ class RangeRing {
   RangeRingParams params_;
   RandomStream random_;
 };
-
-/// Reads the map `range_ring` of a robot file. Throws InputError.
-RangeRingParams read_range_ring(MapReader reader);
 
 }  // namespace vigia::sim

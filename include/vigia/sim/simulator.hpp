@@ -15,10 +15,13 @@
 
 namespace vigia::sim {
 
+/// What a robot's file may leave out.
+RobotParams usual_robot();
+
 /// Everything that a mission's file says of its robot: the robot, its camera and its zoom.
 struct RobotSetup {
-  std::string name;
-  RobotParams robot;
+  std::string name = "robot";
+  RobotParams robot = usual_robot();
   ZoomCalibration zoom;  ///< what the robot believes; per-look focal error on top is the truth
   ImagingParams imaging;
   double initial_zoom_mm = 8.0;
@@ -28,8 +31,8 @@ struct RobotSetup {
   Rig rig() const;
 };
 
-/// Reads a robot file: keys `name`, `base`, `head`, `zoom`, `camera`, `odometry`, `sensor`,
-/// `range_ring`. Throws InputError with the place of what is wrong.
+/// Reads a robot file; the reader stays the caller's to finish. Throws InputError with the place of
+/// what is wrong.
 RobotSetup read_robot_setup(MapReader& reader);
 
 /// The simulated world with the robot in it: the room as it truly is, which the disturbances make
@@ -58,6 +61,8 @@ class Simulator {
   Intrinsics true_intrinsics() const;
   /// How late frames are delivered.
   Duration latency() const { return latency_; }
+  /// How long a delivered frame takes to process.
+  Duration processing() const { return processing_; }
   /// Distance from the robot's hull to the nearest true face or person, m; negative: collided.
   double clearance() const;
   /// The same of people alone; infinite without any.
@@ -80,6 +85,7 @@ class Simulator {
   std::optional<RangeRing> ring_;
   std::optional<Kidnapping> kidnapping_;
   Duration latency_;
+  Duration processing_;
 };
 
 }  // namespace vigia::sim

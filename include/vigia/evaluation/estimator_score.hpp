@@ -1,0 +1,99 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "vigia/core/landmark.hpp"
+#include "vigia/core/rig.hpp"
+#include "vigia/core/sensor_noise.hpp"
+#include "vigia/evaluation/loss_score.hpp"
+#include "vigia/evaluation/pcrlb.hpp"
+#include "vigia/mission/estimator_tick.hpp"
+
+namespace vigia::evaluation {
+
+/// A localizer's estimate at the last fused reading of one look.
+struct LookScore {
+  LookId look = 0;
+  double nees = 0.0;              ///< of (x, y, θ), 3 degrees of freedom
+  double squared_error_m2 = 0.0;  ///< of the position
+  double bound_m2 = 0.0;          ///< trace of the bound's position covariance
+};
+
+/// A time during which a localizer was lost: from when it said so or its error passed kLost_m,
+/// whichever came first, until it tracks again with an error of less than half of that.
+struct LostEpisode {
+  /// An error of the position that nobody would call localized, m.
+  static constexpr double kLost_m = LossScorer::kAstray_m;
+
+  std::optional<double> said_s;    ///< when its belief's status became lost
+  std::optional<double> passed_s;  ///< when its error passed kLost_m
+  std::optional<double> ended_s;
+  double began_s() const;
+  /// Whether it had said so by the time the error passed kLost_m, if it ever did.
+  bool announced() const { return said_s && (!passed_s || *said_s <= *passed_s); }
+};
+
+/// One localizer on one drive. Means are over the ticks of the drive. Without the truth only the
+/// counts and lost_s are known.
+struct LocalizerScore {
+  double position_final_m = 0.0;
+  double position_rmse_m = 0.0;
+  double position_max_m = 0.0;
+  double heading_final_rad = 0.0;
+  double heading_rmse_rad = 0.0;
+  double nees_mean = 0.0;
+  double pcrlb_position_rms_m = 0.0;  ///< √ of the mean trace of the posterior Cramér–Rao bound
+  /// Mean size of a Gaussian error whose covariance is the bound's at the end of the drive: what
+  /// position_final_m and heading_final_rad would be on average at the bound.
+  double pcrlb_position_final_m = 0.0;
+  double pcrlb_heading_final_rad = 0.0;
+  int updates = 0;
+  int rejected = 0;  ///< gated, ambiguous, degenerate, too late, or without an idea where it is
+  int unsupported = 0;
+  double lost_s = 0.0;
+  std::vector<LostEpisode> lost;
+  LossScore loss;
+  std::vector<LookScore> looks;
+};
+
+/// What a drive's estimators are scored with.
+struct EstimatorSetup {
+  LandmarkMap landmarks;
+  RigOnGround on_ground;
+  OdometryNoise odometry;  ///< of the wheels, as it truly is
+  SensorNoise sensor;      ///< of the head's and the zoom's readings, as it truly is
+  Eigen::Matrix3d prior_covariance = Eigen::Matrix3d::Zero();  ///< of (x, y, θ) at the start
+};
+
+/// Scores one localizer of a drive, simulated or recorded, by what an estimator's ticks hold:
+/// errors against the truth, consistency, losses, and the posterior Cramér–Rao bound along the
+/// looks that it fused, linearised at the true state and with the true association.
+class EstimatorScorer {
+ public:
+  explicit EstimatorScorer(EstimatorSetup setup);
+
+  /// @p localizer: index into tick.localizers.
+  void add(const mission::EstimatorTick& tick, std::size_t localizer);
+
+  LocalizerScore score() const;
+
+ private:
+  std::optional<LookId> count_updates(const mission::EstimatorTick& tick, std::size_t localizer);
+  void add_errors(const mission::EstimatorTick& tick, const Belief& belief,
+                  std::optional<LookId> fused);
+  void bound_by(const Observation& observation, const mission::ExposureTruth& truth);
+
+  EstimatorSetup setup_;
+  PosteriorBound bound_;
+  LossScorer losses_;
+  LocalizerScore score_;
+  int ticks_ = 0;  ///< with the truth
+  double squared_position_ = 0.0;
+  double squared_heading_ = 0.0;
+  double nees_ = 0.0;
+  double bound_trace_ = 0.0;
+};
+
+}  // namespace vigia::evaluation

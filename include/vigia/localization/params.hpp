@@ -1,0 +1,14 @@
+#pragma once
+
+#include "vigia/core/params.hpp"
+#include "vigia/localization/bearing_only.hpp"
+#include "vigia/localization/ekf.hpp"
+
+namespace vigia::localization {
+
+// The keys of the localizers' parameters (see ParamVisitor).
+/// The noise that the caller has set is the default: the mission's.
+void describe(ParamVisitor& v, EkfParams& p);
+void describe(ParamVisitor& v, BearingOnlyParams& p);
+
+}  // namespace vigia::localization

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "vigia/core/name_table.hpp"
+#include "vigia/localization/localizer.hpp"
+#include "vigia/mission/setup.hpp"
+
+namespace vigia::mission {
+
+/// Where a localizer has its first pose from, where the mission gives no prior.
+enum class FirstPose {
+  prior,     ///< it cannot start without one
+  recovery,  ///< from the recovery, if it is the primary
+  itself,    ///< it finds itself
+};
+
+struct LocalizerEntry : NameEntry {
+  bool usual;  ///< cheap: runs wherever it fits, unless the mission names its localizers
+  FirstPose first_pose;
+  bool (*fits)(const MissionSetup& setup);  ///< whether robot and world have what it needs
+  std::unique_ptr<localization::Localizer> (*make)(const MissionSetup& setup);
+};
+
+/// Every localizer, in the order of a run's tables.
+const std::vector<LocalizerEntry>& localizers();
+
+/// Whether the localizer cannot be part of the mission unless that gives a prior.
+bool needs_prior(const LocalizerEntry& entry, const MissionSetup& setup);
+
+/// The usual ones that fit and can start.
+std::vector<std::string> usual_localizers(const MissionSetup& setup);
+
+}  // namespace vigia::mission

@@ -1,0 +1,112 @@
+#include "vigia/evaluation/estimator_score.hpp"
+
+#include "lost_episodes.hpp"
+#include "true_association.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "vigia/evaluation/metrics.hpp"
+
+namespace vigia::evaluation {
+namespace {
+
+int& count_of(LocalizerScore& score, localization::UpdateStatus status) {
+  switch (status) {
+    case localization::UpdateStatus::fused:
+      return score.updates;
+    case localization::UpdateStatus::unsupported:
+      return score.unsupported;
+    case localization::UpdateStatus::gated:
+    case localization::UpdateStatus::ambiguous:
+    case localization::UpdateStatus::degenerate:
+    case localization::UpdateStatus::too_late:
+    case localization::UpdateStatus::no_prior:
+      return score.rejected;
+  }
+  return score.rejected;
+}
+
+}  // namespace
+
+EstimatorScorer::EstimatorScorer(EstimatorSetup setup)
+    : setup_(std::move(setup)), bound_(setup_.prior_covariance, setup_.on_ground, setup_.sensor) {}
+
+void EstimatorScorer::add(const mission::EstimatorTick& tick, std::size_t localizer) {
+  const Belief& belief = *tick.localizers[localizer].belief;
+  if (tick.truth) {
+    const mission::GroundTruth& truth = *tick.truth;
+    const double turned = wrap_angle(truth.pose.theta - truth.pose_before.theta);
+    const auto u = chord_increment(truth.pose_before, truth.pose, turned, tick.odometry.from,
+                                   tick.odometry.to);
+    bound_.predict(truth.pose_before, u, control_covariance(u, setup_.odometry));
+  }
+  const auto fused = count_updates(tick, localizer);
+  if (belief.status == BeliefStatus::lost)
+    score_.lost_s += (tick.odometry.to - tick.odometry.from).seconds();
+  if (tick.truth) add_errors(tick, belief, fused);
+}
+
+/// Counts what became of the observations; the look of the last one that was fused.
+std::optional<LookId> EstimatorScorer::count_updates(const mission::EstimatorTick& tick,
+                                                     std::size_t localizer) {
+  const auto& updates = tick.localizers[localizer].updates;
+  std::optional<LookId> look;
+  for (std::size_t k = 0; k < updates.size(); ++k) {
+    ++count_of(score_, updates[k].status);
+    if (updates[k].status != localization::UpdateStatus::fused) continue;
+    if (tick.truth) bound_by(tick.observations[k], tick.truth->exposures[k]);
+    look = shot_of(tick.observations[k]).look;
+  }
+  return look;
+}
+
+/// What the image taught at best, whatever the localizer took it for.
+void EstimatorScorer::bound_by(const Observation& observation,
+                               const mission::ExposureTruth& truth) {
+  const Landmark* landmark =
+      true_landmark(observation, setup_.landmarks, setup_.on_ground, truth.pose, truth.bias);
+  if (landmark != nullptr) bound_.update(truth.pose, truth.bias, *landmark, observation);
+}
+
+void EstimatorScorer::add_errors(const mission::EstimatorTick& tick, const Belief& belief,
+                                 std::optional<LookId> fused) {
+  const Pose2& truth = tick.truth->pose;
+  const Eigen::Vector3d error = difference(belief.pose, truth);
+  const double squared = error.head<2>().squaredNorm();
+  const double nees = evaluation::nees({truth, belief.pose, belief.covariance});
+  const double bound_m2 = bound_.covariance().topLeftCorner<2, 2>().trace();
+  ++ticks_;
+  squared_position_ += squared;
+  squared_heading_ += error.z() * error.z();
+  nees_ += nees;
+  bound_trace_ += bound_m2;
+  score_.position_max_m = std::max(score_.position_max_m, std::sqrt(squared));
+  score_.position_final_m = std::sqrt(squared);
+  score_.heading_final_rad = std::abs(error.z());
+  const double now_s = tick.now.seconds();
+  const double dt_s = (tick.odometry.to - tick.odometry.from).seconds();
+  update_episodes(score_.lost, now_s, belief.status == BeliefStatus::lost, std::sqrt(squared));
+  losses_.add(now_s, dt_s, std::abs(tick.odometry.trans), belief, truth);
+  if (!fused) return;
+  auto& looks = score_.looks;
+  if (looks.empty() || looks.back().look != *fused) looks.push_back({*fused});
+  looks.back() = {*fused, nees, squared, bound_m2};
+}
+
+LocalizerScore EstimatorScorer::score() const {
+  LocalizerScore score = score_;
+  const double n = std::max(1, ticks_);
+  score.position_rmse_m = std::sqrt(squared_position_ / n);
+  score.heading_rmse_rad = std::sqrt(squared_heading_ / n);
+  score.nees_mean = nees_ / n;
+  score.pcrlb_position_rms_m = std::sqrt(bound_trace_ / n);
+  const Eigen::Matrix3d bound = bound_.covariance();
+  score.pcrlb_position_final_m = mean_length(bound.topLeftCorner<2, 2>());
+  score.pcrlb_heading_final_rad = std::sqrt(2.0 * bound(2, 2) / kPi);
+  score.loss = losses_.score();
+  return score;
+}
+
+}  // namespace vigia::evaluation

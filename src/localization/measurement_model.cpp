@@ -1,0 +1,61 @@
+#include "vigia/localization/measurement_model.hpp"
+
+#include <utility>
+
+#include "vigia/localization/chi_square.hpp"
+
+namespace vigia::localization {
+
+const Shot& shot_of(const Match& match) {
+  return std::visit([](const auto& one) -> const Shot& { return one.shot; }, match);
+}
+
+MeasurementModel::MeasurementModel(LandmarkMap map, const RigOnGround& on_ground,
+                                   const MeasurementParams& params, std::optional<FloorPlan> plan)
+    : map_(std::move(map)), on_ground_(on_ground), params_(params), plan_(std::move(plan)) {
+  for (int dof = 1; dof <= kTabledDof; ++dof)
+    gates_[static_cast<std::size_t>(dof)] = chi_square_quantile(params.gate_probability, dof);
+}
+
+Association MeasurementModel::associate(const Observation& observation,
+                                        const LookState& state) const {
+  return std::visit(
+      [&](const auto& seen) {
+        auto found = localization::associate(*this, seen, state);
+        Association association{found.result, std::nullopt};
+        if (found.match) association.match = *std::move(found.match);
+        return association;
+      },
+      observation);
+}
+
+std::optional<Match> MeasurementModel::match(const Observation& observation,
+                                             const Landmark& landmark) const {
+  return std::visit(
+      [&](const auto& seen) -> std::optional<Match> {
+        return localization::match(*this, seen, landmark);
+      },
+      observation);
+}
+
+std::optional<double> MeasurementModel::log_likelihood(const Observation& observation,
+                                                       const Pose2& pose) const {
+  return std::visit(
+      [&](const auto& seen) { return localization::log_likelihood(*this, seen, pose); },
+      observation);
+}
+
+bool MeasurementModel::has_look_biases(CameraId camera) const {
+  return std::holds_alternative<HeadGeometry>(on_ground_.rig.at(camera).mount);
+}
+
+bool MeasurementModel::hides(const Eigen::Vector3d& from_w, const Eigen::Vector3d& to_w) const {
+  return plan_ && !plan_->line_of_sight(from_w, to_w);
+}
+
+double MeasurementModel::gate(int dof) const {
+  if (dof < 1 || dof > kTabledDof) return chi_square_quantile(params_.gate_probability, dof);
+  return gates_[static_cast<std::size_t>(dof)];
+}
+
+}  // namespace vigia::localization

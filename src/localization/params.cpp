@@ -1,0 +1,72 @@
+#include "vigia/localization/params.hpp"
+
+#include "vigia/core/noise_params.hpp"
+
+namespace vigia::localization {
+
+void describe(ParamVisitor& v, EkfParams& p) {
+  const char* const from_noise = "that of `localization.noise`";
+  v.map("odometry", p.odometry,
+        About("the odometry's noise that this filter assumes").otherwise(from_noise));
+  v.map("sensor", p.sensor,
+        About("the head's and the zoom's noise that it assumes").otherwise(from_noise));
+  v.number("gate_probability", p.gate_probability, {0.5, 0.999999},
+           "share of right measurements that pass the gate");
+  v.number("ambiguity_ratio", p.ambiguity_ratio, {1.0, 1e9},
+           "how many times likelier than the next the best landmark must be");
+  v.number("centre_floor_px", p.centre_floor_px, {0.0, 10.0},
+           About("σ of what the model of a disc's centre, or of a point, leaves out")
+               .otherwise(from_noise));
+  v.number("size_floor", p.size_floor, {0.0, 1.0},
+           About("relative σ of what the model of a disc's size leaves out").otherwise(from_noise));
+  v.boolean("use_size", p.use_size,
+            "measure the disc's apparent size; `false`: its direction only, as Armingol (the size "
+            "still tells discs apart)");
+  v.integer("iterations", p.iterations, {1, 20}, "of the joint linearisation of a look, at most");
+  v.integer("look_images", p.look_images, {1, 10000},
+            "images of a look that are linearised anew at each update, at most");
+  v.number("converged", p.converged, {1e-12, 1.0},
+           About("the linearisation ends with a step of less").in("m, rad"));
+  v.number("history_s", p.history_s, {0.0, 60.0}, "how late an observation may come");
+  v.number("lost_sigma_m", p.lost_sigma_m, {0.01, 100.0},
+           "lost while √λ_max of the position covariance is above this");
+  v.integer("lost_rejections", p.lost_rejections, {1, 100000},
+            "lost after so many unexplained frames in a row, …");
+  v.integer("lost_looks", p.lost_looks, {1, 1000}, "… in at least so many looks");
+  v.integer("nis_looks", p.nis_looks, {1, 1000},
+            "lost when the NIS of so many looks' first frames …");
+  v.number("nis_probability", p.nis_probability, {1e-12, 0.5},
+           "… adds up to what chance exceeds with this probability");
+}
+
+void describe(ParamVisitor& v, BearingOnlyParams& p) {
+  const char* const from_noise = "that of `localization.noise`";
+  v.map("odometry", p.odometry,
+        About("the odometry's noise that this localizer assumes").otherwise(from_noise));
+  v.map("sensor", p.sensor,
+        About("the head's and the zoom's noise that it assumes").otherwise(from_noise));
+  v.angle("bearing_floor_deg", p.bearing_floor, {0.0, 10.0},
+          "σ of what a bearing leaves out, white per image");
+  v.number("gate_probability", p.gate_probability, {0.5, 0.999999},
+           "share of right measurements that pass a gate");
+  v.number("ambiguity_ratio", p.ambiguity_ratio, {1.0, 1e9},
+           "how many times likelier than the next the best landmark must be");
+  v.number("history_s", p.history_s, {0.0, 60.0}, "how late an observation may come");
+  v.number("lost_sigma_m", p.lost_sigma_m, {0.01, 100.0},
+           "lost while √λ_max of the position covariance is above this");
+  v.integer("lost_rejections", p.lost_rejections, {1, 100000},
+            "lost after so many unexplained images in a row, …");
+  v.integer("lost_looks", p.lost_looks, {1, 1000}, "… in at least so many looks");
+  v.integer("search_looks", p.search_looks, {3, 100},
+            "looks whose bearings a lost robot remembers");
+  v.integer("min_looks", p.min_looks, {3, p.search_looks}, "of them that one pose must explain");
+  v.number("found_weight", p.found_weight, {0.5, 1.0},
+           "found when one pose has at least this share of the weight");
+  v.number("clutter_cost", p.clutter_cost, {0.0, 100.0},
+           "−ln of how likely a look is at no landmark");
+  v.number("max_range_m", p.max_range_m, {0.1, 1000.0}, "to a landmark that a lost robot may see");
+  v.integer("max_tries", p.max_tries, {1, 10000000},
+            "triples of landmarks that a search tries, at most");
+}
+
+}  // namespace vigia::localization

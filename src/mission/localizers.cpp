@@ -1,0 +1,97 @@
+#include "vigia/mission/localizers.hpp"
+
+#include "localizer_params.hpp"
+
+#include <algorithm>
+
+#include "vigia/localization/ekf.hpp"
+#include "vigia/localization/odometry_localizer.hpp"
+#include "vigia/localization/pattern_fix.hpp"
+
+namespace vigia::mission {
+namespace {
+
+using LocalizerPtr = std::unique_ptr<localization::Localizer>;
+
+bool anywhere(const MissionSetup&) {
+  return true;
+}
+
+bool has_patterns(const MissionSetup& setup) {
+  const auto& landmarks = setup.world.landmarks.all();
+  return std::any_of(landmarks.begin(), landmarks.end(), [](const Landmark& landmark) {
+    return std::holds_alternative<PatternShape>(landmark.shape);
+  });
+}
+
+LocalizerPtr make_ekf(const MissionSetup& setup) {
+  return std::make_unique<localization::EkfLocalizer>(setup.world.landmarks, setup.on_ground(),
+                                                      setup.ekf, setup.world.plan);
+}
+
+LocalizerPtr make_odometry(const MissionSetup& setup) {
+  return std::make_unique<localization::OdometryLocalizer>(setup.noise.odometry);
+}
+
+LocalizerPtr make_pattern_fix(const MissionSetup& setup) {
+  return std::make_unique<localization::PatternFixLocalizer>(
+      setup.world.landmarks, setup.on_ground(), pattern_fix_params(setup));
+}
+
+LocalizerPtr make_bearing_only(const MissionSetup& setup) {
+  return std::make_unique<localization::BearingOnlyLocalizer>(
+      setup.world.landmarks, setup.on_ground(), setup.bearing_only, setup.world.plan);
+}
+
+}  // namespace
+
+const std::vector<LocalizerEntry>& localizers() {
+  static const std::vector<LocalizerEntry> table{
+      {{"ekf", "extended Kalman filter on looks at discs, patterns and tags (Armingol §5)",
+        "landmarks"},
+       true,
+       FirstPose::recovery,
+       &anywhere,
+       &make_ekf},
+      {{"odometry", "dead reckoning alone", "nothing"},
+       true,
+       FirstPose::prior,
+       &anywhere,
+       &make_odometry},
+      {{"pattern_fix", "pose from one view of a colour pattern (QUIXOTE)",
+        "colour patterns in the world"},
+       true,
+       FirstPose::itself,
+       &has_patterns,
+       &make_pattern_fix},
+      {{"bearing_only", "directions to landmarks alone", "landmarks"},
+       false,
+       FirstPose::itself,
+       &anywhere,
+       &make_bearing_only},
+  };
+  return table;
+}
+
+std::vector<std::string> usual_localizers(const MissionSetup& setup) {
+  std::vector<std::string> names;
+  for (const LocalizerEntry& entry : localizers()) {
+    const bool starts = setup.prior || !needs_prior(entry, setup);
+    if (entry.usual && starts && entry.fits(setup)) names.push_back(entry.name);
+  }
+  return names;
+}
+
+bool needs_prior(const LocalizerEntry& entry, const MissionSetup& setup) {
+  switch (entry.first_pose) {
+    case FirstPose::prior:
+      return true;
+    case FirstPose::recovery:
+      return entry.name != setup.primary;
+    case FirstPose::itself:
+      return false;
+  }
+  return true;
+}
+
+}  // namespace vigia::mission

@@ -1,0 +1,85 @@
+#include "navigator.hpp"
+
+namespace vigia::mission {
+
+Navigator::Navigator(const MissionSetup& setup, EventLog& log)
+    : setup_(setup),
+      log_(log),
+      pilot_(setup.path, setup.world.plan, setup.robot.robot.radius_m, setup.robot.robot.base,
+             setup.pilot),
+      waypoints_(setup.waypoints) {}
+
+NavigationStep Navigator::step(const pilot::PilotInput& input) {
+  const pilot::PilotOutput output = pilot_.step(input);
+  NavigationStep step{output.rates, output.activations};
+  record(output);
+  if (output.status == pilot::PilotStatus::blocked) go_round(input, output, step);
+  return step;
+}
+
+void Navigator::record(const pilot::PilotOutput& output) {
+  using pilot::PilotStatus;
+  if (output.status == PilotStatus::evading && !evading_) {
+    evading_ = true;
+    Event::Numbers numbers{{"station_m", output.station_m}};
+    if (output.obstacle_ahead) {
+      numbers.emplace_back("x_m", output.obstacle_ahead->x());
+      numbers.emplace_back("y_m", output.obstacle_ahead->y());
+    }
+    log_.record(EventKind::evade, numbers);
+  } else if (output.status == PilotStatus::driving && evading_) {
+    evading_ = false;
+    log_.record(EventKind::rejoined, {{"station_m", output.station_m}});
+  } else if (output.status == PilotStatus::waiting && status_ != PilotStatus::waiting) {
+    log_.record(EventKind::wait, {{"station_m", output.station_m}});
+  }
+  status_ = output.status;
+}
+
+/// The path stays blocked: another one is planned round what blocks it. Without any, the robot
+/// waits and tries again.
+void Navigator::go_round(const pilot::PilotInput& input, const pilot::PilotOutput& output,
+                         NavigationStep& step) {
+  const Pose2& here = input.belief.pose;
+  const Eigen::Vector2d where = output.obstacle_ahead.value_or(here.position());
+  log_.record(EventKind::blocked,
+              {{"x_m", where.x()}, {"y_m", where.y()}, {"for_s", pilot_.stalled_s()}});
+  if (pilot_.stalled_s() >= setup_.pilot.avoidance.give_up_s) {
+    log_.record(EventKind::stuck, {},
+                {{"reason", "the path stays blocked and there is no way round"}});
+    step.gave_up = true;
+    return;
+  }
+  blockages_.note(input.now, pilot_.obstacles(here));
+  step.replanned = replan(here, "blocked", blockages_.recent(input.now));
+}
+
+bool Navigator::replan(const Pose2& from, const std::string& reason,
+                       const std::vector<RoundObstacle>& others) {
+  std::vector<Eigen::Vector2d> waypoints{from.position()};
+  // The waypoints that still lie ahead on the path that was being followed.
+  const Path& path = pilot_.path();
+  double station = 0.0;
+  for (std::size_t i = 1; i < waypoints_.size(); ++i) {
+    station = path.project(waypoints_[i], station, path.length());
+    if (station > pilot_.station() || i + 1 == waypoints_.size())
+      waypoints.push_back(waypoints_[i]);
+  }
+  planner::Route route;
+  for (;;) {
+    route =
+        planner::plan_route(setup_.world.plan, waypoints, setup_.route, setup_.route_seed, others);
+    // A place to pass by on which something stands is passed by at a distance.
+    const bool via_blocked =
+        route.status == planner::RouteStatus::goal_blocked && route.leg + 2 < waypoints.size();
+    if (!via_blocked) break;
+    waypoints.erase(waypoints.begin() + static_cast<std::ptrdiff_t>(route.leg) + 1);
+  }
+  if (route.status != planner::RouteStatus::found) return false;
+  waypoints_ = waypoints;
+  pilot_.follow(route.path);
+  log_.record(EventKind::replan, {{"length_m", route.path.length()}}, {{"reason", reason}});
+  return true;
+}
+
+}  // namespace vigia::mission

@@ -1,0 +1,183 @@
+#include "sweep_recovery.hpp"
+
+#include "localizer_params.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "vigia/core/plane_geometry.hpp"
+#include "vigia/localization/pattern_fix.hpp"
+
+namespace vigia::mission {
+namespace {
+
+constexpr double kExploration_s = 12.0;
+constexpr double kExplorationLength_m = 1.5;
+constexpr double kMinExploration_m = 0.3;
+constexpr double kEndMargin_m = 0.7;  // from the robot's centre to what stands at the end
+
+/// The direction in which the ring has most room, and how far to go there; nothing when hemmed in.
+std::optional<RangeReading> widest_direction(const RangeScan& scan) {
+  const auto& ring = scan.readings;
+  std::optional<RangeReading> widest;
+  double best = 0.0;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const double left = ring[(i + 1) % ring.size()].range_m;
+    const double right = ring[(i + ring.size() - 1) % ring.size()].range_m;
+    const double room =
+        std::min(std::min({left, ring[i].range_m, right}) - kEndMargin_m, kExplorationLength_m);
+    // Rather ahead than back to where it came from.
+    const double merit = room * (1.0 + 0.3 * std::cos(ring[i].bearing));
+    if (room < kMinExploration_m || merit <= best) continue;
+    best = merit;
+    widest = RangeReading{ring[i].bearing, room, true};
+  }
+  return widest;
+}
+
+/// A prior from a belief that has been called into question: half a metre and 10° wider.
+Prior inflated_prior(const Belief& belief) {
+  Prior prior{belief.pose, belief.covariance};
+  prior.covariance.diagonal() += Eigen::Vector3d(0.25, 0.25, from_deg(10.0) * from_deg(10.0));
+  return prior;
+}
+
+std::optional<Prior> best_of(const localization::Relocalization& found) {
+  if (found.status != localization::RelocalizationStatus::found) return std::nullopt;
+  return Prior{found.hypotheses.front().pose, found.hypotheses.front().covariance};
+}
+
+}  // namespace
+
+SweepRecovery::SweepRecovery(const MissionSetup& setup, perception::Eye& eye, EventLog& log)
+    : setup_(setup),
+      eye_(eye),
+      log_(log),
+      relocalizer_(setup.world.landmarks, setup.world.plan, setup.on_ground(),
+                   relocalizer_params(setup)),
+      look_around_(setup),
+      knew_(setup.prior.has_value()) {}
+
+RecoveryStep SweepRecovery::begin(const Readings& readings) {
+  RecoveryStep step;
+  sweep_ = {};
+  begin_sweep(readings.head, step);
+  step.commands.head = head_ = look_around_.step(readings.head);
+  return step;
+}
+
+RecoveryStep SweepRecovery::step(const RecoveryInput& input) {
+  const Readings& readings = input.readings;
+  RecoveryStep step;
+  if (exploration_) {
+    if (explore(input, step)) return step;
+    exploration_.reset();
+    begin_sweep(readings.head, step);
+  }
+  // The capture must have been exposed at this stop, standing still.
+  const Delivery* delivery = delivered(input.deliveries);
+  const Stamp exposed = delivery != nullptr ? delivery->exposure->shot.stamp : Stamp{};
+  if (look_around_.ready(readings.now, readings.head, exposed)) {
+    process(delivery->capture());
+    if (!look_around_.next()) {
+      finish_sweep(input, step);
+      return step;
+    }
+    step.new_look = true;
+  }
+  step.commands.head = head_ = look_around_.step(readings.head);
+  return step;
+}
+
+void SweepRecovery::begin_sweep(const HeadReading& head, RecoveryStep& step) {
+  step.new_look = true;
+  look_around_.begin(head);
+}
+
+const Delivery* SweepRecovery::delivered(const std::vector<Delivery>& deliveries) const {
+  for (const Delivery& delivery : deliveries)
+    if (delivery.eye == &eye_ && delivery.present) return &delivery;
+  return nullptr;
+}
+
+void SweepRecovery::process(const perception::Capture& capture) {
+  sweep_.views.push_back(capture.shot);
+  for (const Observation& observation : eye_.survey(capture)) {
+    if (const auto* disc = std::get_if<EllipseObservation>(&observation))
+      sweep_.sightings.push_back(*disc);
+    if (const auto* points = std::get_if<PointsObservation>(&observation)) read_code(*points);
+  }
+}
+
+/// A pattern says who it is and where the robot stands: the surest one of a sweep counts.
+void SweepRecovery::read_code(const PointsObservation& seen) {
+  localization::PatternFixLocalizer fix(setup_.world.landmarks, setup_.on_ground(),
+                                        pattern_fix_params(setup_));
+  fix.reset(shot_of(seen).stamp, {});
+  if (fix.update(seen).status != localization::UpdateStatus::fused) return;
+  const Prior found{fix.belief().pose, fix.belief().covariance};
+  if (!by_code_ || found.covariance.trace() < by_code_->covariance.trace()) by_code_ = found;
+}
+
+void SweepRecovery::finish_sweep(const RecoveryInput& input, RecoveryStep& step) {
+  step.commands.head = head_;
+  step.pose = relocalize(input.belief);
+  if (step.pose) {
+    step.status = RecoveryStatus::found;
+    knew_ = true;
+    look_around_.found();
+    return;
+  }
+  if (look_around_.sweeps() >= setup_.recovery.sweeps) {
+    log_.record(EventKind::stuck, {}, {{"reason", "looked around in vain"}});
+    step.status = RecoveryStatus::gave_up;
+    return;
+  }
+  if (!begin_exploration(input)) begin_sweep(input.readings.head, step);
+}
+
+std::optional<Prior> SweepRecovery::relocalize(const Belief& belief) {
+  const localization::Sweep sweep = std::exchange(sweep_, {});
+  const auto found = relocalizer_.solve(sweep);
+  log_.record(EventKind::looked_around,
+              {{"sightings", static_cast<double>(sweep.sightings.size())},
+               {"hypotheses", static_cast<double>(found.hypotheses.size())}});
+  if (const auto here = std::exchange(by_code_, std::nullopt)) return here;
+  if (const auto here = best_of(found)) return here;
+  if (!knew_) return std::nullopt;
+  // The alarm may have been a false one: what was believed helps where too little is seen.
+  return best_of(relocalizer_.solve(sweep, inflated_prior(belief)));
+}
+
+/// Where too little is seen, another place may show more: some steps to where the ring has most
+/// room, by odometry alone.
+bool SweepRecovery::begin_exploration(const RecoveryInput& input) {
+  const auto direction = widest_direction(input.scan());
+  if (!direction) return false;
+  const Pose2& here = input.belief.pose;
+  const Eigen::Vector2d from = here.position();
+  const Eigen::Vector2d to =
+      from + direction->range_m * unit_vector(here.theta + direction->bearing);
+  exploration_.emplace(
+      Exploration{pilot::Pilot(Path({from, to}), setup_.world.plan, setup_.robot.robot.radius_m,
+                               setup_.robot.robot.base, setup_.pilot),
+                  input.readings.now + Duration::from_seconds(kExploration_s)});
+  log_.record(EventKind::exploration, {{"length_m", direction->range_m}});
+  return true;
+}
+
+bool SweepRecovery::explore(const RecoveryInput& input, RecoveryStep& step) {
+  if (input.readings.now >= exploration_->end) return false;
+  const RangeScan scan = input.scan();
+  const auto output = exploration_->pilot.step(
+      {input.readings.now, input.readings.odometry, input.belief, &scan, false});
+  step.activations = output.activations;
+  const bool under_way =
+      output.status != pilot::PilotStatus::arrived && output.status != pilot::PilotStatus::blocked;
+  if (under_way) step.commands.base = output.rates;
+  head_ = {};
+  return under_way;
+}
+
+}  // namespace vigia::mission

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "event_log.hpp"
+#include "look_around.hpp"
+#include "recovery.hpp"
+
+#include <optional>
+
+#include "vigia/localization/relocalizer.hpp"
+#include "vigia/pilot/pilot.hpp"
+
+namespace vigia::mission {
+
+/// The recovery of a robot with a head: it stands still and looks around, and what it sees, all at
+/// once, tells where it is: a code alone, or the discs together. Where too little is seen it goes
+/// to where the range ring has most room, and looks around there.
+class SweepRecovery : public Recovery {
+ public:
+  /// @p eye: of the camera that the head turns. All references outlive the recovery.
+  SweepRecovery(const MissionSetup& setup, perception::Eye& eye, EventLog& log);
+
+  RecoveryStep begin(const Readings& readings) override;
+  RecoveryStep step(const RecoveryInput& input) override;
+
+ private:
+  /// On the way to another place to look around from.
+  struct Exploration {
+    pilot::Pilot pilot;
+    Stamp end;
+  };
+
+  void begin_sweep(const HeadReading& head, RecoveryStep& step);
+  /// What the eye's camera has delivered that was exposed in the present look.
+  const Delivery* delivered(const std::vector<Delivery>& deliveries) const;
+  void process(const perception::Capture& capture);
+  void read_code(const PointsObservation& seen);
+  void finish_sweep(const RecoveryInput& input, RecoveryStep& step);
+  std::optional<Prior> relocalize(const Belief& belief);
+  bool begin_exploration(const RecoveryInput& input);
+  /// Whether the robot is still on its way.
+  bool explore(const RecoveryInput& input, RecoveryStep& step);
+
+  const MissionSetup& setup_;
+  perception::Eye& eye_;
+  EventLog& log_;
+  localization::Relocalizer relocalizer_;
+  LookAround look_around_;
+  localization::Sweep sweep_;
+  std::optional<Prior> by_code_;  ///< what a pattern of the sweep said
+  std::optional<Exploration> exploration_;
+  HeadRates head_;  ///< asked for last
+  bool knew_;       ///< where it was, some time before it was lost
+};
+
+}  // namespace vigia::mission

@@ -1,0 +1,85 @@
+#include "vigia/mission/localizers.hpp"
+
+#include "support/temp_dir.hpp"
+
+#include <fstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "vigia/core/error.hpp"
+
+namespace vigia::mission {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+MissionSetup load(const std::string& name, const std::vector<std::string>& overrides = {}) {
+  return load_mission(VIGIA_SOURCE_DIR "/config/missions/" + name + ".yaml", overrides);
+}
+
+TEST(Localizers, EveryNameMakesTheLocalizerOfThatName) {
+  const MissionSetup setup = load("quixote-room");
+  for (const LocalizerEntry& entry : localizers()) EXPECT_EQ(entry.make(setup)->name(), entry.name);
+}
+
+TEST(Localizers, AMissionThatNamesNoneHasTheCheapOnesThatSuitRobotAndWorld) {
+  EXPECT_THAT(load("armingol-room").localizers, ElementsAre("ekf", "odometry"));
+  EXPECT_THAT(load("quixote-room").localizers, ElementsAre("ekf", "odometry", "pattern_fix"));
+}
+
+TEST(Localizers, AMissionHasThoseThatItNames) {
+  const auto setup = load("armingol-room", {"localization.localizers=[odometry]"});
+  EXPECT_THAT(setup.localizers, ElementsAre("odometry"));
+  EXPECT_EQ(setup.primary, "odometry");
+}
+
+std::string refusal(const std::vector<std::string>& overrides) {
+  try {
+    load("armingol-room", overrides);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Localizers, WithoutAPriorThoseThatCannotStartAreLeftOutOrRefusedByName) {
+  const auto setup = load("armingol-room", {"start.prior=false"});
+  EXPECT_FALSE(setup.prior);
+  EXPECT_THAT(setup.localizers, ElementsAre("ekf"));
+  EXPECT_THAT(refusal({"start.prior=false", "localization.localizers=[ekf, odometry]"}),
+              AllOf(HasSubstr("'odometry' cannot start without a prior"), HasSubstr("localizers")));
+  EXPECT_THAT(refusal({"start.prior=false", "localization.localizers=[bearing_only, ekf]",
+                       "localization.primary=bearing_only"}),
+              HasSubstr("'ekf' cannot start without a prior"));
+  EXPECT_EQ(refusal({"start.prior=false", "localization.localizers=[ekf, bearing_only]"}), "");
+}
+
+TEST(Localizers, AllTakeTheirNoiseFromTheOneModelUnlessTheirOwnKeysOverrideIt) {
+  const auto setup = load("armingol-room", {"localization.noise.sensor.look_angle_deg=0.6",
+                                            "localization.noise.centre_floor_px=0.03",
+                                            "localization.ekf.sensor.look_angle_deg=0.1"});
+  EXPECT_NEAR(setup.noise.sensor.look_angle, from_deg(0.6), 1e-12);
+  EXPECT_NEAR(setup.ekf.sensor.look_angle, from_deg(0.1), 1e-12);
+  EXPECT_NEAR(setup.ekf.centre_floor_px, 0.03, 1e-12);
+  EXPECT_NEAR(setup.bearing_only.sensor.look_angle, from_deg(0.6), 1e-12);
+  EXPECT_NEAR(setup.gaze.look_angle, from_deg(0.6), 1e-12);
+  EXPECT_NEAR(load("armingol-room", {"gaze.look_angle_deg=1"}).gaze.look_angle, from_deg(1), 1e-12);
+}
+
+TEST(Localizers, TheResolvedMissionNamesThem) {
+  const auto setup = load("quixote-room", {"localization.primary=pattern_fix"});
+  EXPECT_THAT(setup.resolved_yaml, HasSubstr("localizers: [ekf, odometry, pattern_fix]"));
+  const testing::TempDir dir;
+  std::ofstream(dir.path() / "mission.yaml") << setup.resolved_yaml;
+  const auto again = load_mission(dir.path() / "mission.yaml");
+  EXPECT_EQ(again.localizers, setup.localizers);
+  EXPECT_EQ(again.primary, "pattern_fix");
+  EXPECT_EQ(again.resolved_yaml, setup.resolved_yaml);
+}
+
+}  // namespace
+}  // namespace vigia::mission
