@@ -1,4 +1,5 @@
 #include "commands.hpp"
+#include "usage_mistake.hpp"
 
 #include <memory>
 #include <optional>
@@ -56,7 +57,7 @@ CLI::App* add_kind(CLI::App& command, const char* name, const char* what,
   kind->add_option("--dpi", options->dpi, "Pixels per inch of a .png")->capture_default_str();
   kind->add_option("--paper", options->paper,
                    "As large as a sheet takes it: a4, a3 or letter; the print says its size")
-      ->check(CLI::IsMember({"a4", "a3", "letter"}));
+      ->check(one_of({"a4", "a3", "letter"}));
   return kind;
 }
 

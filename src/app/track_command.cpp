@@ -1,6 +1,7 @@
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "track_run.hpp"
+#include "usage_mistake.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -18,7 +19,9 @@
 
 #include "vigia/core/camera_file.hpp"
 #include "vigia/core/error.hpp"
+#include "vigia/core/suggestion.hpp"
 #include "vigia/core/world_map.hpp"
+#include "vigia/tracking/trackers.hpp"
 
 namespace vigia::app {
 namespace {
@@ -44,7 +47,7 @@ struct TrackOptions {
 };
 
 bool tracks_points(const TrackOptions& options) {
-  return options.tracker == "pattern" || options.tracker == "tag";
+  return find_name(tracking::trackers(), options.tracker)->make_points != nullptr;
 }
 
 /// A whole text as a number; nothing when it is none.
@@ -198,8 +201,9 @@ int track(const TrackOptions& options) {
 }
 
 void add_what(CLI::App& command, TrackOptions& options) {
-  command.add_option("--tracker", options.tracker, "disc, ellipse, correlation, pattern or tag")
-      ->check(CLI::IsMember({"disc", "ellipse", "correlation", "pattern", "tag"}))
+  const std::vector<std::string> trackers = names_of(tracking::trackers());
+  command.add_option("--tracker", options.tracker, joined(trackers))
+      ->check(one_of(trackers))
       ->capture_default_str();
   command
       .add_option("inputs", options.inputs,
@@ -207,7 +211,7 @@ void add_what(CLI::App& command, TrackOptions& options) {
                   "addresses, or - for pictures on stdin")
       ->required();
   command.add_option("--polarity", options.polarity, "Discs that are dark, bright or either")
-      ->check(CLI::IsMember({"dark", "bright", "either"}))
+      ->check(one_of({"dark", "bright", "either"}))
       ->capture_default_str();
   command.add_option("--radius-px", options.radius_px,
                      "MIN:MAX, smallest and largest semi-axis of discs, px");
