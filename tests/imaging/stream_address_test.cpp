@@ -8,10 +8,10 @@
 namespace vigia::imaging {
 namespace {
 
-using testing::HasSubstr;
-using testing::Not;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
-std::string error_of(const std::string& text) {
+std::string address_error(const std::string& text) {
   try {
     parse_address(text);
   } catch (const InputError& error) {
@@ -37,15 +37,16 @@ TEST(StreamAddress, NoMessageHasThePasswordHoweverWrongTheAddressIs) {
        {"rtsp://user:sec ret@host/", "rtsp://user:sec/ret@host/x", "rtsp://user:sec@ret@/x",
         "ftp://user:sec@host/x", "rtsp://user:sec@host:99999/", "rtsp://host/?sec!",
         "rtsp://user:sec?x@host:0/"}) {
-    EXPECT_NE(error_of(text), "no error") << text;
-    EXPECT_THAT(error_of(text), Not(HasSubstr("sec"))) << text;
+    EXPECT_NE(address_error(text), "no error") << text;
+    EXPECT_THAT(address_error(text), Not(HasSubstr("sec"))) << text;
   }
 }
 
 TEST(StreamAddress, OtherProtocolsAreRefused) {
   for (const std::string text :
        {"ftp://host/x", "file:///etc/passwd", "concat://a", "udp://@:1234", "v4l2:///dev/video0"})
-    EXPECT_THAT(error_of(text), HasSubstr("begins with rtsp://, rtsps://, http:// or https://"));
+    EXPECT_THAT(address_error(text),
+                HasSubstr("begins with rtsp://, rtsps://, http:// or https://"));
 }
 
 TEST(StreamAddress, TheTextOfAPipelineIsRefused) {
@@ -53,7 +54,7 @@ TEST(StreamAddress, TheTextOfAPipelineIsRefused) {
        {"rtsp://host/x ! filesink location=/tmp/x", "http://host/a!b", "http://ho st/",
         "http://host/\"x\"", "http://host/'x'", "http://host/x;y", "http://host/%zz",
         "http://host/\n", "rtsp://-host/", "http:///path", "rtsp://host:80x/", "rtsp://host:0/"})
-    EXPECT_NE(error_of(text), "no error") << text;
+    EXPECT_NE(address_error(text), "no error") << text;
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ const fs::path kStored = "/usr/share/visp-images-data/ViSP-images";
 const fs::path kEllipse = kStored / "ellipse" / "ellipse.pgm";
 const fs::path kGrid = kStored / "calibration" / "grid36-01.pgm";
 
-PictureRunParams params_for(const std::string& tracker) {
+PictureRunParams hard_params_for(const std::string& tracker) {
   PictureRunParams params;
   params.tracker = tracker;
   return params;
@@ -31,7 +31,7 @@ std::vector<EllipseFeature> find_in(const vpImage<unsigned char>& picture,
                                     const std::string& tracker) {
   const imaging::ImageFrame frame(picture);
   imaging::Canvas canvas = canvas_of(frame);
-  return make_picture_tracker(params_for(tracker))->find_all(canvas);
+  return make_picture_tracker(hard_params_for(tracker))->find_all(canvas);
 }
 
 vpImage<unsigned char> grey_picture(const fs::path& file) {
@@ -85,7 +85,7 @@ TEST_P(NoisyDiscs, AreFoundAndNothingElseIs) {
 
 TEST_P(NoisyDiscs, AreFollowedFromPictureToPicture) {
   RandomStream random(65, "noisy sequence");
-  PictureRun pictures(params_for(GetParam()));
+  PictureRun pictures(hard_params_for(GetParam()));
   for (int k = 0; k < 8; ++k) {
     const Ellipse disc{90.3 + 3.0 * k, 108.6 - k, 40.0, 33.0, 0.4};
     SyntheticImage image(220, 220, 200.0);
