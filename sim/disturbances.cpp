@@ -47,9 +47,9 @@ void describe(ParamVisitor& v, WheelSlipParams& p) {
   v.number("per_m", p.per_m, {0.0, 100.0}, "slips that begin per metre driven");
   v.number("min_m", p.min_m, {0.0, 10.0}, "length of a slip");
   v.number("max_m", p.max_m, {bound_of("min_m", p.min_m), 10.0}, "length of a slip");
-  v.number("min_loss", p.min_loss, {0.0, 1.0}, "share of the way that a slip costs");
+  v.number("min_loss", p.min_loss, {0.0, 1.0}, "share of the distance that a slip costs");
   v.number("max_loss", p.max_loss, {bound_of("min_loss", p.min_loss), 1.0},
-           "share of the way that a slip costs");
+           "share of the distance that a slip costs");
   v.angle("skew_deg_per_m", p.skew_per_m, {0.0, 90.0}, "σ of the turn that a slip adds");
   v.number("diameter", p.diameter, {0.0, 0.2}, "σ of the relative error of the wheels' diameter");
   v.number("base", p.base, {0.0, 0.2}, "σ of the relative error of the wheel base");

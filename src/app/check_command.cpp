@@ -23,6 +23,10 @@ struct CheckOptions {
   std::vector<std::string> overrides;
 };
 
+std::string count_of(std::size_t count, const std::string& thing) {
+  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+}
+
 // Each checks a file of its kind and says what it holds. All throw InputError.
 
 std::string check_world(const std::shared_ptr<ConfigNode>& root) {
@@ -30,7 +34,8 @@ std::string check_world(const std::shared_ptr<ConfigNode>& root) {
   const WorldMap world = read_world_map(reader);
   sim::read_appearance(reader, world);
   reader.finish();
-  return fmt::format("\"{}\", with {} landmarks", world.name, world.landmarks.all().size());
+  return fmt::format("\"{}\", with {}", world.name,
+                     count_of(world.landmarks.all().size(), "landmark"));
 }
 
 std::string check_robot(const std::shared_ptr<ConfigNode>& root) {
@@ -42,8 +47,8 @@ std::string check_robot(const std::shared_ptr<ConfigNode>& root) {
 
 std::string check_campaign(const CheckOptions& options) {
   const auto campaign = evaluation::read_campaign(options.file, options.overrides);
-  return fmt::format("\"{}\", {} arms × {} seeds = {} missions", campaign.name,
-                     campaign.arms.size(), campaign.seeds, campaign.missions());
+  return fmt::format("\"{}\", {} × {} seeds = {} missions", campaign.name,
+                     count_of(campaign.arms.size(), "arm"), campaign.seeds, campaign.missions());
 }
 
 std::string check_mission(const CheckOptions& options) {
@@ -57,7 +62,7 @@ std::string check_rules(const std::string& file) {
   const std::string text{std::istreambuf_iterator<char>(in), {}};
   if (!in) throw InputError(file + ": cannot be read");
   const auto engine = planner::FuzzyEngine::read(text, file);
-  return fmt::format("with {} inputs", engine.input_names().size());
+  return fmt::format("with {}", count_of(engine.input_names().size(), "input"));
 }
 
 enum class FileKind { mission, world, robot, campaign, rules };

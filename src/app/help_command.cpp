@@ -69,6 +69,7 @@ std::vector<KeyRow> keys_below(const std::string& path, bool flat) {
   }
   if (!found.empty()) return found;
   std::vector<std::string> names;
+  names.reserve(all.size());
   for (const KeyRow& row : all) names.push_back(row.key);
   throw InputError(fmt::format("there is no key '{}'{}", path, suggestion(path, names)));
 }
@@ -107,6 +108,8 @@ void print_keys(const HelpOptions& options) {
   TextRows rows{{"key", "default", "values", "meaning"}};
   for (const KeyRow& row : keys) {
     const std::string rest = rest_of(row.key, options.prefix);
+    // Below its heading in a page a map needs no row of its own.
+    if (markdown && rest.empty() && keys.size() > 1) continue;
     rows.push_back({markdown ? "`" + (rest.empty() ? row.key : rest) + "`" : row.key, usual_of(row),
                     values_of(row), meaning_of(row)});
   }
@@ -161,7 +164,9 @@ std::vector<std::string> command_names(const CLI::App& app) {
 }
 
 void print_overview(const CLI::App& app) {
-  fmt::print("{}\nTopics of `vigia help`:\n", app.help());
+  // CLI::App::help() would be that of the command which is running.
+  const std::string all = app.get_formatter()->make_help(&app, "vigia", CLI::AppFormatMode::Normal);
+  fmt::print("{}\nTopics of `vigia help`:\n", all);
   for (const Topic& topic : topics()) fmt::print("  {:<27} {}\n", topic.name, topic.meaning);
 }
 

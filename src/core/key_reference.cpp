@@ -11,8 +11,10 @@ namespace vigia {
 namespace {
 
 std::string write_bound(const Bound& bound) {
+  constexpr double kLongest = 1e7;  // whole numbers that are read more easily without exponent
   if (!bound.text.empty()) return bound.text;
-  return write_number(bound.value);
+  const bool whole = bound.value == std::floor(bound.value) && std::abs(bound.value) <= kLongest;
+  return whole ? std::to_string(static_cast<long long>(bound.value)) : write_number(bound.value);
 }
 
 std::string write_bounds(const Bounds& bounds) {

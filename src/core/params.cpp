@@ -23,7 +23,7 @@ class FieldReader {
   void operator()(const AngleField& f) const {
     const Range range = f.degrees.range();
     f.radians = from_deg(required_ ? map_.number(key_, range)
-                                   : map_.number(key_, range, written_degrees(f.radians)));
+                                   : map_.number(key_, range, to_deg(f.radians)));
   }
   void operator()(const IntegerField& f) const {
     const Range range = f.bounds.range();

@@ -1,16 +1,15 @@
 #include "vigia/evaluation/paper_table.hpp"
 
+#include "json.hpp"
+
 #include <cmath>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "vigia/evaluation/text_table.hpp"
 
 namespace vigia::evaluation {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 template <typename Value>
 Json or_null(const std::optional<Value>& value) {

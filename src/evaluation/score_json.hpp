@@ -1,12 +1,10 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include "json.hpp"
 
 #include "vigia/evaluation/drive_score.hpp"
 
 namespace vigia::evaluation {
-
-using Json = nlohmann::ordered_json;
 
 /// The parts of summary.json.
 Json loss_json(const LossScore& score);

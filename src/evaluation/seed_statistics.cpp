@@ -60,6 +60,7 @@ LocalizerStatistics localizer_statistics(const std::vector<DriveScore>& scores,
   statistics.pcrlb_ratio = evaluation::pcrlb_ratio(errors, bounds, kBootstrapSeed);
 
   std::vector<LossScore> losses;
+  losses.reserve(scores.size());
   for (const auto& score : scores) losses.push_back(score.localizers.at(name).loss);
   statistics.loss = combined(losses);
   statistics.right_recoveries_share =

@@ -59,7 +59,8 @@ void describe(ParamVisitor& v, BearingOnlyParams& p) {
   v.integer("lost_looks", p.lost_looks, {1, 1000}, "… in at least so many looks");
   v.integer("search_looks", p.search_looks, {3, 100},
             "looks whose bearings a lost robot remembers");
-  v.integer("min_looks", p.min_looks, {3, p.search_looks}, "of them that one pose must explain");
+  v.integer("min_looks", p.min_looks, {3, bound_of("search_looks", p.search_looks)},
+            "of them that one pose must explain");
   v.number("found_weight", p.found_weight, {0.5, 1.0},
            "found when one pose has at least this share of the weight");
   v.number("clutter_cost", p.clutter_cost, {0.0, 100.0},

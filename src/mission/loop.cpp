@@ -40,8 +40,12 @@ EventKind event_of(Outcome outcome) {
 
 ExposureTruth truth_of(const ExposedFrame& exposure) {
   const sim::RobotTruth& truth = exposure.truth;
-  const HeadAngles& angle = truth.look_angle_error;
-  return {truth.stamp, truth.pose, {angle.pan, angle.tilt, truth.look_log_focal_error}};
+  ExposureTruth known{truth.stamp, truth.pose, {}};
+  // A camera that does not move has no looks, and none of their errors.
+  if (exposure.shot.look != 0)
+    known.bias = {truth.look_angle_error.pan, truth.look_angle_error.tilt,
+                  truth.look_log_focal_error};
+  return known;
 }
 
 }  // namespace

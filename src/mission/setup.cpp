@@ -32,8 +32,7 @@ void describe_start(ParamVisitor& v, MissionSetup& setup) {
   double heading = 0.0;
   v.vector("position_m", position, kMetres,
            About("where the localizers are told the robot is").required());
-  v.angle("heading_deg", heading, {-360.0, 360.0},
-          About("which way they are told it looks").required());
+  v.angle("heading_deg", heading, {-360.0, 360.0}, About("which heading they are told").required());
   v.number("sigma_m", setup.start_sigma_m, {0.0, 5.0},
            "the true position is drawn round it with this, each coordinate; the prior says so");
   v.angle("sigma_deg", setup.start_sigma_rad, {0.0, 180.0},

@@ -143,8 +143,8 @@ std::optional<Prior> SweepRecovery::relocalize(const Belief& belief) {
   log_.record(EventKind::looked_around,
               {{"sightings", static_cast<double>(sweep.sightings.size())},
                {"hypotheses", static_cast<double>(found.hypotheses.size())}});
-  if (const auto here = std::exchange(by_code_, std::nullopt)) return here;
-  if (const auto here = best_of(found)) return here;
+  if (auto here = std::exchange(by_code_, std::nullopt)) return here;
+  if (auto here = best_of(found)) return here;
   if (!knew_) return std::nullopt;
   // The alarm may have been a false one: what was believed helps where too little is seen.
   return best_of(relocalizer_.solve(sweep, inflated_prior(belief)));

@@ -52,7 +52,7 @@ std::string header(const MissionStart& start) {
   text += ",activation_follow,activation_avoid,activation_hold";
   for (std::size_t i = 1; i < start.eyes.size(); ++i) text += eye_header(start.eyes, i);
   for (const auto& name : start.setup.localizers)
-    text += "," + name + "_lost_probability," + name + "_hypotheses";
+    for (const char* column : {"lost_probability", "hypotheses"}) text += "," + name + "_" + column;
   return text + "\n";
 }
 

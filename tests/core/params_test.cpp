@@ -23,7 +23,7 @@ struct Legs {
 struct Creature {
   std::string name = "horse";
   double age_s = 3.0;
-  double tilt = from_deg(6.0);
+  double tilt = from_deg(45.0);
   int count = 4;
   bool tame = true;
   Gait gait = Gait::trot;
@@ -114,7 +114,7 @@ TEST(Params, AreWrittenBackInTheirOrderWithDefaults) {
   Creature creature;
   read_params(MapReader(root, "creature"), creature);
   EXPECT_EQ(dump_config(*root),
-            "version: 1\nage_s: 7\nname: horse\ntilt_deg: 6\ncount: 4\ntame: true\ngait: trot\n"
+            "version: 1\nage_s: 7\nname: horse\ntilt_deg: 45\ncount: 4\ntame: true\ngait: trot\n"
             "food: hay\nplace_m: [1, 2]\nmount_m: [0, 0, 1.5]\n"
             "legs:\n  stride_m: 0.5\n  max_stride_m: 1\nghost: off\n");
 }
@@ -122,7 +122,7 @@ TEST(Params, AreWrittenBackInTheirOrderWithDefaults) {
 TEST(Params, ThatAreLeftOutKeepTheValueThatTheFieldHas) {
   const Creature c = read("age_s: 7\n");
   EXPECT_EQ(c.name, "horse");
-  EXPECT_EQ(c.tilt, from_deg(6.0));
+  EXPECT_EQ(c.tilt, from_deg(45.0));
   EXPECT_FALSE(c.rider);
   EXPECT_FALSE(c.ghost);
 }
@@ -154,7 +154,7 @@ TEST(KeyReference, GivesUnitRangeDefaultAndMeaning) {
   EXPECT_EQ(tilt.kind, "number");
   EXPECT_EQ(tilt.unit, "°");
   EXPECT_EQ(tilt.range, "-90 … 90");
-  EXPECT_EQ(tilt.usual, "6");
+  EXPECT_EQ(tilt.usual, "45");
   EXPECT_EQ(tilt.meaning, "of the head");
   EXPECT_EQ(row("creature.gait").range, "walk, trot");
   EXPECT_EQ(row("creature.mount_m").usual, "[0, 0, 1.5]");

@@ -81,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"Policy", "plan x.yaml --policy nearst",
                    "found 'nearst', must be one of fixed, random, nearest, greedy, fuzzy, pattern; "
                    "did you mean 'nearest'?"},
-        WrongUsage{"Topic", "help kyes", "there is no help on 'kyes'; did you mean 'keys'?"},
+        WrongUsage{"Topic", "help keyz", "there is no help on 'keyz'; did you mean 'keys'?"},
         WrongUsage{"Key", "help keys planner.trigger.distanc_m",
                    "there is no key 'planner.trigger.distanc_m'; did you mean "
                    "'planner.trigger.distance_m'?"}),
