@@ -46,10 +46,11 @@ FeatureStatus judge_robustly(const EdgeFit& fit, const DiscTrackerParameters& pa
   constexpr int kCoveredArcs = 2;
   constexpr double kLargeEnough = 5.0;  // px: of a smaller disc a part may be any blot
   constexpr double kLeastGround = 0.5;  // of the ring beside the outline
+  constexpr double kRound = 0.04;       // of the semi-minor axis
   const double axis = ellipse_of(fit.shape).b;
-  const double ragged = std::hypot(
-      parameters.max_raggedness_px + parameters.max_raggedness_ratio * axis, fit.raggedness_chance);
-  if (fit.raggedness > ragged || fit.ground_share < kLeastGround)
+  const double ragged = std::min(
+      parameters.max_raggedness_px + parameters.max_raggedness_ratio * axis, kRound * axis);
+  if (fit.raggedness > std::hypot(ragged, fit.raggedness_chance) || fit.ground_share < kLeastGround)
     return FeatureStatus::wrong_object;
   if (fit.agreement >= parameters.min_agreement) return FeatureStatus::found;
   if (fit.bad_arcs > kCoveredArcs || axis < kLargeEnough) return FeatureStatus::wrong_object;
@@ -66,9 +67,7 @@ bool near(const EllipseShape& a, const EllipseShape& b) {
 EdgeFitParameters edge_fit_parameters(const DiscTrackerParameters& parameters) {
   EdgeFitParameters out;
   if (!parameters.robust) return out;
-  constexpr double kMostClipped = 0.05;
   out.robust = true;
-  out.max_clipped = kMostClipped;
   return out;
 }
 

@@ -86,10 +86,28 @@ bool is_ellipse(const EllipseShape& shape) {
          shape.sigma(0, 0) > 0.0 && ellipse_of(shape).b >= kMinAxis;
 }
 
+std::bitset<kOutlineSectors> turned(const std::bitset<kOutlineSectors>& sectors, std::size_t by) {
+  return sectors << by | sectors >> (kOutlineSectors - by);
+}
+
+// With the neighbours of what covers more than one sector: one alone is a rough edge.
 std::bitset<kOutlineSectors> with_neighbours(const std::bitset<kOutlineSectors>& sectors) {
-  const auto ahead = sectors << 1U | sectors >> (kOutlineSectors - 1);
-  const auto behind = sectors >> 1U | sectors << (kOutlineSectors - 1);
-  return sectors | ahead | behind;
+  const auto ahead = turned(sectors, 1);
+  const auto behind = turned(sectors, kOutlineSectors - 1);
+  const auto runs = sectors & (ahead | behind);
+  return sectors | turned(runs, 1) | turned(runs, kOutlineSectors - 1);
+}
+
+// Of a standard normal number beyond z: its mean λ = φ(z)/Φ(−z).
+double mean_beyond(double z) {
+  constexpr double kFar = 8.0;
+  if (z > kFar) return z + 1.0 / z;
+  const double density = std::exp(-0.5 * z * z) / std::sqrt(2.0 * kPi);
+  return density / (0.5 * std::erfc(z / std::sqrt(2.0)));
+}
+
+bool is_clipped(float grey) {
+  return grey <= 0.0F || grey >= 255.0F;
 }
 
 }  // namespace
@@ -176,8 +194,10 @@ void EdgeFitter::collect(const vpImage<unsigned char>& image, const imaging::Win
     take(first, std::min(last, hole_first - 1));
     take(std::max(first, hole_last + 1), last);
   }
-  leave_out_clipped();
   if (covered_.any()) leave_out_covered();
+  const auto greys = grey_.head(count_);
+  clipped_ =
+      count_ > 0 ? static_cast<double>((greys <= 0.0F || greys >= 255.0F).count()) / count_ : 0.0;
 }
 
 void EdgeFitter::leave_out_covered() {
@@ -195,31 +215,34 @@ void EdgeFitter::leave_out_covered() {
   count_ = kept;
 }
 
-// A level that the camera cuts off says only that the light was at least so strong, or so weak. In
-// strong noise half of a level's pixels may be cut off: what is left of them would be worse.
-void EdgeFitter::leave_out_clipped() {
-  clipped_ = 0.0;
-  if (parameters_.max_clipped >= 1.0) return;
-  constexpr float kNearEnd = 15.0F;  // grey levels
-  constexpr double kPlateau = 0.8;   // of the pixels near an end that are at it
-  const auto greys = grey_.head(count_);
-  const auto is_plateau = [&](Eigen::Index at_end, Eigen::Index near_end) {
-    return static_cast<double>(at_end) > parameters_.max_clipped * count_ &&
-           static_cast<double>(at_end) > kPlateau * static_cast<double>(near_end);
-  };
-  const bool dark = is_plateau((greys <= 0.0F).count(), (greys <= kNearEnd).count());
-  const bool bright = is_plateau((greys >= 255.0F).count(), (greys >= 255.0F - kNearEnd).count());
-  if (!dark && !bright) return;
-  int kept = 0;
+// A level that the camera cuts off says only that the light was at least so strong, or so weak
+// (Tobin 1958). In the place of such a pixel stands its mean given that, which pulls at the model
+// with the weight λ (λ − z): all of it where the model is on the near side of the limit, nothing
+// where it is well beyond.
+void EdgeFitter::expect_clipped() {
+  constexpr double kLeastNoise = 0.5;  // grey levels
+  constexpr double kLeastWeight = 1e-4;
+  double squares = 0.0;
+  int whole = 0;
   for (int i = 0; i < count_; ++i) {
-    if ((dark && grey_[i] <= 0.0F) || (bright && grey_[i] >= 255.0F)) continue;
-    u_[kept] = u_[i];
-    v_[kept] = v_[i];
-    grey_[kept] = grey_[i];
-    ++kept;
+    if (is_clipped(grey_[i])) continue;
+    squares += static_cast<double>(residual_[i] * residual_[i]);
+    ++whole;
   }
-  clipped_ = 1.0 - static_cast<double>(kept) / count_;
-  count_ = kept;
+  const double noise = std::max(kLeastNoise, std::sqrt(squares / std::max(1, whole)));
+  weight_ = whole;
+  for (int i = 0; i < count_; ++i) {
+    if (!is_clipped(grey_[i])) continue;
+    const double sign = grey_[i] <= 0.0F ? -1.0 : 1.0;
+    // Rounding takes half a level more for the limit.
+    const double z = (sign * static_cast<double>(residual_[i]) - 0.5) / noise;
+    const double beyond = mean_beyond(z);
+    const double weight = beyond * (beyond - z);
+    weight_ += weight;
+    const double root = weight > kLeastWeight ? std::sqrt(weight) : 0.0;
+    residual_[i] = root > 0.0 ? static_cast<float>(sign * noise * beyond / root) : 0.0F;
+    jacobian_.row(i) *= static_cast<float>(root);
+  }
 }
 
 void EdgeFitter::evaluate() {
@@ -250,6 +273,8 @@ void EdgeFitter::evaluate() {
   if (beside_.light) take_out_light();
   differentiate_edge(places, density, contrast, outline.blur, n, columns());
   jacobian_.col(kGround).head(n).setOnes();
+  weight_ = n;
+  if (parameters_.robust && clipped_ > 0.0) expect_clipped();
   const int padding = padded(n) - n;
   jacobian_.middleRows(n, padding).setZero();
   residual_.segment(n, padding).setZero();
@@ -502,7 +527,8 @@ bool EdgeFitter::settle(const vpImage<unsigned char>& image, const imaging::Wind
     return iterate(image, bounds);
   };
   if (!rests()) {
-    if (!parameters_.robust) return false;
+    constexpr double kLargeEnough = 8.0;  // px: what is smaller and restless is a blot
+    if (!parameters_.robust || ellipse_of(start).b < kLargeEnough) return false;
     shape_ = start;
     profile_ = profile;
     look_beside(image, bounds);
@@ -543,7 +569,7 @@ EdgeFit EdgeFitter::conclude(const Agreement& agreement) {
   const double squares = static_cast<double>(residual_.head(count_).matrix().squaredNorm()) -
                          gradient_.dot(normal_.ldlt().solve(gradient_));
   if (!step()) return result;
-  const double variance = std::max(squares / (count_ - kUnknowns), kQuantisationVariance);
+  const double variance = std::max(squares / (weight_ - kUnknowns), kQuantisationVariance);
   // Texture beside the outline, or a print that isn't round, moves whole sectors: errors that the
   // residuals of single pixels do not show. Chance alone stays below the limit, 2 σ of χ²/19.
   constexpr double kChance = 1.65;

@@ -34,16 +34,13 @@ struct EdgeFitParameters {
   double sector_offset_px = 0.35;
   double sector_offset_ratio = 0.03;
   double sector_offset_sigmas = 4.0;
-  /// Whether to look beside the outline: a slope of light there is taken out of the fit. And
-  /// neighbours of sectors that disagree are left out with them: what covers a part of the outline
-  /// seldom ends where a sector does.
+  /// Whether to look beside the outline: a slope of light there is taken out of the fit. Pixels at
+  /// 0 or 255 count as at least so dark or bright. And neighbours of sectors that disagree are left
+  /// out with them: what covers a part of the outline seldom ends where a sector does.
   bool robust = false;
   /// Standard deviation of the blur about that of the start, px; 0: nothing is known of it.
   double blur_prior_px = 0.0;
   double noise = 0.0;  ///< grey levels, for the weight of that
-  /// Where more than this share of the band lies on a plateau at 0 or 255, those pixels are left
-  /// out.
-  double max_clipped = 1.0;
 };
 
 /// Sectors of the outline, whose parts are tested one by one.
@@ -73,7 +70,7 @@ struct EdgeFit {
   int bad_arcs = 0;         ///< runs of neighbouring sectors that disagree
   double agreement = 0.0;   ///< share of the outline's sectors that agree with the model
   bool complete = false;    ///< the whole band lay inside the bounds
-  double clipped = 0.0;     ///< share of the band's pixels that are at 0 or 255 and left out
+  double clipped = 0.0;     ///< share of the band's pixels that are at 0 or 255
   double raggedness_chance = 0.0;            ///< what chance may add to it, px (3 σ)
   double ground_share = 1.0;                 ///< see Surroundings; 1 where nobody looked
   std::optional<LightSlope> light;           ///< that was taken out
@@ -145,10 +142,10 @@ class EdgeFitter {
   void begin(const EllipseShape& start, const EdgeProfile& profile);
   void reserve(Eigen::Index capacity);
   void collect(const vpImage<unsigned char>& image, const imaging::Window& bounds);
-  void leave_out_clipped();
   void leave_out_covered();
   void evaluate();
   void take_out_light();
+  void expect_clipped();
   JacobianColumns columns();
   void project_residual();
   void accumulate();
@@ -179,7 +176,8 @@ class EdgeFitter {
   double change_ = 0.0;        ///< of outline and blur by the last step, px
   double level_change_ = 0.0;  ///< of the grey levels by the last step, as a share of the contrast
   bool complete_ = false;
-  double clipped_ = 0.0;                  ///< share of the band that is left out
+  double clipped_ = 0.0;                  ///< share of the band at 0 or 255
+  double weight_ = 0.0;                   ///< of all pixels, one that isn't clipped having 1
   std::bitset<kOutlineSectors> covered_;  ///< sectors that are left out from the beginning
   Surroundings beside_;
   double start_blur_ = 0.0;

@@ -13,7 +13,6 @@ namespace {
 constexpr std::size_t kLightSectors = 16;
 constexpr double kRingWidth = 6.0;      // px of ground outside the band
 constexpr double kLeastInterior = 3.0;  // px of the disc's semi-minor axis within the band
-constexpr int kClipped = 254;           // grey levels from here on may be cut off
 
 /// Sums over the pixels of one sector.
 struct SectorSum {
@@ -21,6 +20,9 @@ struct SectorSum {
   double u = 0.0;
   double v = 0.0;
   double grey = 0.0;
+  double clipped = 0.0;  ///< pixels at 0 or 255, which tell no slope
+
+  double level() const { return grey / pixels; }
 };
 using SectorSums = std::array<SectorSum, kLightSectors>;
 
@@ -39,7 +41,6 @@ class SectorSummer {
     const unsigned char* row = image_[static_cast<unsigned>(v)];
     const auto y = static_cast<float>(v - centre_.y());
     for (int u = from; u <= to; ++u) {
-      if (row[u] >= kClipped) continue;
       const auto x = static_cast<float>(u - centre_.x());
       // A substitute for the angle that needs no arc tangent: 0..4 once round.
       const float turn = y / (std::abs(x) + std::abs(y) + 1e-6F);
@@ -51,6 +52,7 @@ class SectorSummer {
       sum.u += static_cast<double>(x);
       sum.v += static_cast<double>(y);
       sum.grey += static_cast<double>(row[u]);
+      sum.clipped += row[u] == 0 || row[u] == 255 ? 1.0 : 0.0;
     }
   }
 
@@ -160,7 +162,7 @@ std::optional<PlaneFit> fit_plane(const SectorSums& sums,
     if (sum.pixels == 0.0) continue;
     const double predicted =
         fit.levels.dot(Eigen::Vector3d(1.0, sum.u / sum.pixels, sum.v / sum.pixels));
-    fit.residual[k] = (sum.grey / sum.pixels - predicted) * std::sqrt(sum.pixels);
+    fit.residual[k] = (sum.level() - predicted) * std::sqrt(sum.pixels);
     if (used[k]) squares += fit.residual[k] * fit.residual[k];
   }
   // Rounding alone leaves 1/12.
@@ -188,8 +190,10 @@ std::array<bool, kLightSectors> inliers(const PlaneFit& fit,
 
 std::optional<Plane> plane_of(const SectorSums& sums) {
   constexpr double kLeastPixels = 3.0;
+  constexpr double kMostClipped = 0.1;
   std::array<bool, kLightSectors> seen{};
-  for (std::size_t k = 0; k < kLightSectors; ++k) seen[k] = sums[k].pixels >= kLeastPixels;
+  for (std::size_t k = 0; k < kLightSectors; ++k)
+    seen[k] = sums[k].pixels >= kLeastPixels && sums[k].clipped <= kMostClipped * sums[k].pixels;
   std::optional<PlaneFit> fit = fit_plane(sums, seen);
   // Twice: what stands out draws the first plane to itself.
   for (int pass = 0; fit && pass < 2; ++pass) fit = fit_plane(sums, inliers(*fit, seen));
@@ -220,11 +224,10 @@ double ground_share(const SectorSums& ring, const SideLevels& levels) {
   int like_ground = 0;
   for (const SectorSum& sum : ring) {
     if (sum.pixels == 0.0) continue;
-    const double level = sum.grey / sum.pixels;
     ++seen;
-    like_ground += std::abs(level - levels.ground) < std::abs(level - levels.disc) ? 1 : 0;
+    like_ground +=
+        std::abs(sum.level() - levels.ground) < std::abs(sum.level() - levels.disc) ? 1 : 0;
   }
-  // Nothing but clipped pixels: nothing to say.
   return seen > 0 ? static_cast<double>(like_ground) / seen : 1.0;
 }
 

@@ -193,20 +193,13 @@ std::optional<EdgeMeasurement> MovingEdgeTracker::State::measure(
   sites.setMe(&edges_);
   sites.setDisplay(vpMeSite::NONE);
   EdgeMeasurement out;
-  // Sites that search along the normals of a start to one side of the edge come only part of the
-  // way: the next round starts from where they got to.
-  constexpr int kRounds = 5;
-  constexpr double kRest = 0.1;  // px
+  // A site holds on to what it first sees, and looks for the like of it from then on: on the flank
+  // of an edge it would stay beside it.
+  constexpr unsigned kFirstLook = 4;  // px to either side
+  sites.setInitRange(kFirstLook);
   try {
     sites.initTracking(image, parameters);
-    Eigen::Vector2d before = start.centre;
-    for (int round = 0; round < kRounds; ++round) {
-      sites.track(image);
-      const Eigen::Vector2d now(sites.getCenter().get_u(), sites.getCenter().get_v());
-      const bool rests = (now - before).norm() < kRest;
-      before = now;
-      if (rests) break;
-    }
+    sites.track(image);
   } catch (const vpException&) {
     return std::nullopt;
   }
@@ -219,7 +212,7 @@ std::optional<EdgeMeasurement> MovingEdgeTracker::State::measure(
   out.sites = sites.good_sites();
   out.held = std::min(1.0, static_cast<double>(out.sites) / std::max(1U, sites.expected_sites()));
   out.scatter = scatter_of(sites, shape);
-  // ViSP's edge operator answers half a pixel to the right of and below the edge.
+  // ViSP cuts a site's place off to the pixel whose edge it takes.
   constexpr double kHalfPixel = 0.5;
   out.ellipse.u -= kHalfPixel;
   out.ellipse.v -= kHalfPixel;

@@ -10,6 +10,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <opencv2/imgproc.hpp>
+
 #include "vigia/core/error.hpp"
 
 namespace vigia::tracking {

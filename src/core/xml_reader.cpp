@@ -129,10 +129,11 @@ class XmlParser {
       else
         out.text += text_[at_] == '&' ? entity() : text_[at_++];
     }
+    const SourceLocation end_tag = here();
     at_ += 2;
     const std::string end = read_name();
     if (end != out.name)
-      throw error("found </" + end + ">, where </" + out.name + "> would be right");
+      throw InputError(end_tag, "found </" + end + ">, where </" + out.name + "> would be right");
     skip_blanks();
     if (!next_is(">")) throw error("this tag has no end '>'");
     ++at_;

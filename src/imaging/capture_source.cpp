@@ -55,14 +55,25 @@ class VideoFile : public PictureSource {
       if (number_ == 0) throw InputError({file_.string()}, "a video without a picture");
       return std::nullopt;
     }
-    const double time_s = 1e-3 * capture_.get(cv::CAP_PROP_POS_MSEC);
-    return Picture{numbered(file_.stem().string(), ++number_), time_s,
+    ++number_;
+    return Picture{numbered(file_.stem().string(), number_), time_of_picture(),
                    std::make_unique<BgrFrame>(std::move(bgr))};
   }
 
  private:
+  // Streams without a container, as MPEG-1 video, have no time stamps: their pictures follow each
+  // other at the stated rate.
+  std::optional<double> time_of_picture() {
+    const double stamp_s = 1e-3 * capture_.get(cv::CAP_PROP_POS_MSEC);
+    if (number_ == 1) first_s_ = stamp_s;
+    if (number_ == 1 || stamp_s > first_s_) return stamp_s - first_s_;
+    const double rate = capture_.get(cv::CAP_PROP_FPS);
+    return rate > 0.0 ? std::optional((number_ - 1) / rate) : std::nullopt;
+  }
+
   std::filesystem::path file_;
   cv::VideoCapture capture_;
+  double first_s_ = 0.0;
   int number_ = 0;
 };
 

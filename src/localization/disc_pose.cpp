@@ -38,19 +38,25 @@ Vector5 offset(const Ellipse& predicted, const Ellipse& seen) {
   return out;
 }
 
-/// The covariance of offset(), from that of (u, v, a, b, ψ), whose last part knows no more than a
-/// uniform angle does where the axes are alike.
+/// The covariance of offset(), from that of (u, v, a, b, ψ). Of axes that are not told apart, a ≈ b
+/// within what var(a − b) lets expect, ψ says nothing: a circle's outline r + A cos 2θ + B sin 2θ
+/// has a − b = 2A, and B, which is across, as uncertain as A.
 Matrix5 offset_covariance(const Ellipse& e, const Matrix5& covariance) {
   constexpr double kKnown = 0.5;  // of a uniform angle's variance
   const double psi = covariance(4, 4);
+  const double apart = std::pow(e.a - e.b, 2);
   const double alike = covariance(2, 2) + covariance(3, 3) - 2.0 * covariance(2, 3);
-  const double across = psi < kKnown * kUniformTilt
-                            ? std::pow(e.a - e.b, 2) * psi / (1.0 - psi / kUniformTilt)
-                            : alike;
   Matrix5 out = covariance;
-  const double scale = std::sqrt(across / psi);
-  out.row(4) *= scale;
-  out.col(4) *= scale;
+  if (psi < kKnown * kUniformTilt) {
+    const double scale = std::sqrt(apart / (1.0 - psi / kUniformTilt));
+    out.row(4) *= scale;
+    out.col(4) *= scale;
+    out(4, 4) += 0.25 * alike * std::exp(-0.5 * apart / alike);
+  } else {
+    out.row(4).setZero();
+    out.col(4).setZero();
+    out(4, 4) = 0.25 * alike;
+  }
   return out;
 }
 

@@ -223,7 +223,7 @@ TEST_F(Track, MistakesOfTheCommandAreNamed) {
       {picture + " --camera " + camera, "--camera: how large are the landmarks?"},
       {picture + " --size 0.2", "only with --camera"},
       {picture + " --size 0.2 --camera /nowhere.xml", "/nowhere.xml: the file does not exist"},
-      {picture + " --size 0.2 --camera " + wrong, "wrong.xml:1:19: found </root>"},
+      {picture + " --size 0.2 --camera " + wrong, "wrong.xml:1:15: found </root>"},
       {"ftp://user:secret@host/x", "ftp://host/x: a camera's address begins with"},
       {"'rtsp://user:secret@host/!x'", "path and query"},
       {(dir_.path() / "g%04d.png").string(), "no file has such a name"},
