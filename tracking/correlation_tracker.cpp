@@ -93,6 +93,7 @@ EllipseFeature CorrelationTracker::State::refine(const vpImage<unsigned char>& i
                                                  const Window& window, const EllipseShape& start,
                                                  const Gate* gate, const Window& frame) {
   TemplateMatch sharp = match(image, window, start, parameters_.blur_px, nullptr);
+  if (parameters_.finder.robust) fitter_.set_noise(noise_level(image, window));
   // A correlation over all pixels hardly tells a hidden arc, another form or a cut outline.
   const EdgeFit outline =
       fitter_.fit(image, window, sharp.converged ? sharp.shape : start,

@@ -32,8 +32,13 @@ EdgeFitParameters noise_fit_parameters(const DiscTrackerParameters& parameters) 
   return out;
 }
 
-// Whether a fit stands clear of the noise as a whole: C √(pixels)/σ. A large disc is seen in noise
-// in which a small one is not.
+// What the picture's noise leaves unexplained of the residuals.
+double misfit_of(const EdgeFit& fit) {
+  return std::sqrt(std::max(0.0, std::pow(fit.noise, 2) - std::pow(fit.picture_noise, 2)));
+}
+
+// Whether a fit stands clear of the picture's noise as a whole: C √(pixels)/σ. A large disc is seen
+// in noise in which a small one is not.
 bool stands_clear_of_noise(const EdgeFit& fit) {
   constexpr double kClear = 30.0;
   constexpr double kLeastRatio = 1.5;
@@ -45,7 +50,7 @@ bool stands_clear_of_noise(const EdgeFit& fit) {
 FeatureStatus judge_robustly(const EdgeFit& fit, const DiscTrackerParameters& parameters) {
   constexpr int kCoveredArcs = 2;
   constexpr double kLargeEnough = 5.0;  // px: of a smaller disc a part may be any blot
-  constexpr double kLeastGround = 0.5;  // of the ring beside the outline
+  constexpr double kLeastGround = 0.6;  // of the ring beside the outline
   constexpr double kRound = 0.04;       // of the semi-minor axis
   const double axis = ellipse_of(fit.shape).b;
   const double ragged = std::min(
@@ -76,7 +81,8 @@ FeatureStatus judge_fit(const EdgeFit& fit, const DiscTrackerParameters& paramet
   const double contrast = std::abs(fit.profile.ground - fit.profile.disc);
   if (fit.agreement < parameters.min_occluded_agreement) return FeatureStatus::wrong_object;
   const bool clear = contrast >= parameters.min_contrast_to_noise * fit.noise ||
-                     (parameters.robust && stands_clear_of_noise(fit));
+                     (parameters.robust && stands_clear_of_noise(fit) &&
+                      contrast >= parameters.min_contrast_to_noise * misfit_of(fit));
   if (contrast < parameters.min_contrast || !clear) return FeatureStatus::low_contrast;
   if (parameters.robust) return judge_robustly(fit, parameters);
   // What hides a disc takes an arc or two of the outline; another form crosses the ellipse often.
@@ -115,6 +121,7 @@ std::vector<DiscCandidate> DiscFinder::find(const vpImage<unsigned char>& image,
   std::vector<DiscCandidate> out;
   if (window.empty()) return out;
   noise_ = noise_level(image, window);
+  fitter_.set_noise(noise_);
   noise_fitter_.set_noise(noise_);
   smoothing_ = smoothing_for(noise_, parameters_.min_contrast);
   if (polarity != Polarity::bright) find_dark(image, window, false, min_axis_ratio, out);

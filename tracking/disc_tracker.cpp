@@ -2,6 +2,7 @@
 
 #include "disc_finder.hpp"
 #include "lost_feature.hpp"
+#include "noise_smoothing.hpp"
 #include "pixel.hpp"
 #include "seeded_dot.hpp"
 
@@ -223,6 +224,7 @@ EllipseFeature DiscTracker::State::track(Canvas& canvas) {
   const Window window = intersect(window_round(predicted, margin), frame);
   if (window.empty()) return lost_ellipse(FeatureStatus::not_found);
   canvas.require(window);
+  if (parameters_.robust) fitter_.set_noise(noise_level(canvas.image(), window));
 
   if (const auto dot = follow_dot(canvas.image(), predicted, window)) {
     const EdgeFit fit = fitter_.fit(canvas.image(), window, *dot, profile_);

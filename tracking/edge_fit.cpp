@@ -450,12 +450,20 @@ EdgeFitter::Agreement EdgeFitter::judge_sectors(const Sectors& sectors) const {
     chance += 2.0 * std::pow(variance / sector.edge, 2);
   }
   out.raggedness = std::sqrt(std::max(0.0, out.raggedness) / std::max(1, good));
-  out.raggedness_chance = std::sqrt(3.0 * std::sqrt(chance) / std::max(1, good));
+  // Chance is the picture's noise, not what a poor model leaves.
+  const double explained = std::min(1.0, std::pow(picture_noise(), 2) / variance);
+  out.raggedness_chance = std::sqrt(3.0 * explained * std::sqrt(chance) / std::max(1, good));
   for (std::size_t k = 0; k < kOutlineSectors; ++k)
     out.bad_arcs += out.bad[k] && !out.bad[(k + 1) % kOutlineSectors] ? 1 : 0;
   out.unrest = unrest / std::max(1, good - 5);
   if (parameters_.robust) out.bad = with_neighbours(out.bad & ~covered_) | out.bad;
   return out;
+}
+
+// Of the pixels in a band, whose median is as uncertain as few pixels make it.
+double EdgeFitter::picture_noise() const {
+  constexpr double kSlack = 1.25;
+  return kSlack * parameters_.noise;
 }
 
 // Leaves out the pixels of bad sectors.
@@ -585,6 +593,7 @@ EdgeFit EdgeFitter::conclude(const Agreement& agreement) {
   result.bad_arcs = agreement.bad_arcs;
   result.bad_sectors = agreement.bad;
   result.noise = std::sqrt(variance);
+  result.picture_noise = picture_noise();
   result.complete = complete_;
   result.clipped = clipped_;
   result.raggedness_chance = agreement.raggedness_chance;

@@ -40,7 +40,7 @@ struct EdgeFitParameters {
   bool robust = false;
   /// Standard deviation of the blur about that of the start, px; 0: nothing is known of it.
   double blur_prior_px = 0.0;
-  double noise = 0.0;  ///< grey levels, for the weight of that
+  double noise = 0.0;  ///< of the picture, grey levels; 0: not known
 };
 
 /// Sectors of the outline, whose parts are tested one by one.
@@ -65,13 +65,14 @@ struct EdgeFit {
   /// Of (u, v, Σ₁₁, Σ₁₂, Σ₂₂).
   Eigen::Matrix<double, 5, 5> covariance = Eigen::Matrix<double, 5, 5>::Identity();
   EdgeProfile profile;
-  double noise = 0.0;       ///< standard deviation of the residuals, grey levels
+  double noise = 0.0;          ///< standard deviation of the residuals, grey levels
+  double picture_noise = 0.0;  ///< what of that the picture explains, grey levels; 0: not known
   double raggedness = 0.0;  ///< rms distance of the sectors from the ellipse beyond the noise, px
   int bad_arcs = 0;         ///< runs of neighbouring sectors that disagree
   double agreement = 0.0;   ///< share of the outline's sectors that agree with the model
   bool complete = false;    ///< the whole band lay inside the bounds
   double clipped = 0.0;     ///< share of the band's pixels that are at 0 or 255
-  double raggedness_chance = 0.0;            ///< what chance may add to it, px (3 σ)
+  double raggedness_chance = 0.0;            ///< what the picture's noise may add to it, px (3 σ)
   double ground_share = 1.0;                 ///< see Surroundings; 1 where nobody looked
   std::optional<LightSlope> light;           ///< that was taken out
   std::bitset<kOutlineSectors> bad_sectors;  ///< in UnitCoordinates of the shape
@@ -156,6 +157,7 @@ class EdgeFitter {
   std::optional<Agreement> refine_without_bad(const vpImage<unsigned char>& image,
                                               const imaging::Window& bounds);
   double band_half_width() const;
+  double picture_noise() const;
   void look_beside(const vpImage<unsigned char>& image, const imaging::Window& bounds);
   void expect_blur();
   EdgeFit finish(const vpImage<unsigned char>& image, const imaging::Window& bounds);

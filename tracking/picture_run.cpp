@@ -77,7 +77,7 @@ class PictureRun::State {
  private:
   static std::optional<double> distance(const Target& target, const EllipseFeature& disc);
   bool search_is_due() const;
-  EllipseFeature within_limits(const EllipseFeature& feature) const;
+  EllipseFeature within_limits(const EllipseFeature& feature, double slack) const;
   std::vector<EllipseFeature> search(imaging::Canvas& canvas);
   std::vector<EllipseFeature> claim(imaging::Canvas& canvas, std::vector<EllipseFeature>& discs);
   void track_unclaimed(imaging::Canvas& canvas, std::vector<EllipseFeature>& features);
@@ -144,11 +144,13 @@ bool PictureRun::State::search_is_due() const {
   return pictures_ % std::max(1, params_.every) == 0;
 }
 
-EllipseFeature PictureRun::State::within_limits(const EllipseFeature& feature) const {
+// The radii may be off their range by the factor @p slack.
+EllipseFeature PictureRun::State::within_limits(const EllipseFeature& feature, double slack) const {
   if (feature.status != FeatureStatus::found) return feature;
   if (feature.score < params_.min_score)
     return lost_ellipse(FeatureStatus::not_found, feature.score);
-  if (feature.ellipse.b < params_.min_radius_px || feature.ellipse.a > params_.max_radius_px)
+  if (slack * feature.ellipse.b < params_.min_radius_px ||
+      feature.ellipse.a > slack * params_.max_radius_px)
     return lost_ellipse(FeatureStatus::wrong_object, feature.score);
   return feature;
 }
@@ -156,7 +158,7 @@ EllipseFeature PictureRun::State::within_limits(const EllipseFeature& feature) c
 std::vector<EllipseFeature> PictureRun::State::search(imaging::Canvas& canvas) {
   std::vector<EllipseFeature> discs;
   for (const EllipseFeature& disc : finder_->find_all(canvas))
-    if (within_limits(disc).status == FeatureStatus::found) discs.push_back(disc);
+    if (within_limits(disc, 1.0).status == FeatureStatus::found) discs.push_back(disc);
   return discs;
 }
 
@@ -183,10 +185,11 @@ std::vector<EllipseFeature> PictureRun::State::claim(imaging::Canvas& canvas,
 
 void PictureRun::State::track_unclaimed(imaging::Canvas& canvas,
                                         std::vector<EllipseFeature>& features) {
+  constexpr double kHeldSlack = 1.25;  // a disc that is held may go a little beyond the limits
   for (std::size_t i = 0; i < targets_.size(); ++i) {
     if (features[i].status == FeatureStatus::found) continue;
     targets_[i].tracker->expect_motion(targets_[i].motion.velocity());
-    features[i] = within_limits(targets_[i].tracker->track(canvas));
+    features[i] = within_limits(targets_[i].tracker->track(canvas), kHeldSlack);
   }
 }
 

@@ -156,6 +156,21 @@ TEST(Pictures, AVideoHasNumbersAndTimes) {
   EXPECT_NEAR(times[3] - times[1], 0.2, 1e-6);
 }
 
+TEST(Pictures, AVideoWithoutTimeStampsHasTheTimesOfItsRate) {
+  const std::string file = "/usr/share/visp-images-data/ViSP-images/video/cube.mpeg";
+  if (!fs::exists(file)) GTEST_SKIP() << "visp-images-data is not installed";
+  const auto source = open_pictures(file);
+  std::vector<double> times;
+  for (int k = 0; k < 5; ++k) {
+    const auto picture = source->next();
+    ASSERT_TRUE(picture && picture->time_s);
+    times.push_back(*picture->time_s);
+  }
+  EXPECT_EQ(times[0], 0.0);
+  EXPECT_NEAR(times[4], 4.0 * times[1], 1e-9);
+  EXPECT_GT(times[1], 0.01);
+}
+
 TEST(Pictures, WhatIsNoVideoIsSaidToBeNone) {
   const TempDir dir;
   const fs::path file = dir.path() / "text.mp4";
