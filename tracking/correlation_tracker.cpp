@@ -161,6 +161,14 @@ EllipseFeature CorrelationTracker::State::judge(const TemplateMatch& match, cons
   if ((outline.shape.centre - c).norm() > parameters_.max_outline_offset_px)
     return lost_ellipse(FeatureStatus::occluded, score);
 
+  // Where the camera has cut a level off, r is largest for a disc of another size: the outline's
+  // fit knows of the limit.
+  constexpr double kClipped = 0.05;
+  if (parameters_.finder.robust && outline.clipped > kClipped) {
+    EllipseFeature feature = feature_of(outline, FeatureStatus::found);
+    feature.score = score;
+    return feature;
+  }
   EllipseFeature feature;
   feature.status = FeatureStatus::found;
   const EllipseEstimate estimate = estimate_of(match.shape, match.covariance);

@@ -61,19 +61,27 @@ class VideoFile : public PictureSource {
   }
 
  private:
-  // Streams without a container, as MPEG-1 video, have no time stamps: their pictures follow each
-  // other at the stated rate.
+  // Streams without a container, as MPEG-1 video, lack time stamps, at their end at least: such
+  // pictures follow at the stated rate.
   std::optional<double> time_of_picture() {
+    constexpr double kLongestGap = 3600.0;  // s; what lies further ahead is no stamp
     const double stamp_s = 1e-3 * capture_.get(cv::CAP_PROP_POS_MSEC);
-    if (number_ == 1) first_s_ = stamp_s;
-    if (number_ == 1 || stamp_s > first_s_) return stamp_s - first_s_;
     const double rate = capture_.get(cv::CAP_PROP_FPS);
-    return rate > 0.0 ? std::optional((number_ - 1) / rate) : std::nullopt;
+    if (number_ == 1)
+      first_s_ = last_s_ = stamp_s;
+    else if (stamp_s > last_s_ && stamp_s < last_s_ + kLongestGap)
+      last_s_ = stamp_s;
+    else if (rate > 0.0)
+      last_s_ += 1.0 / rate;
+    else
+      return std::nullopt;
+    return last_s_ - first_s_;
   }
 
   std::filesystem::path file_;
   cv::VideoCapture capture_;
   double first_s_ = 0.0;
+  double last_s_ = 0.0;
   int number_ = 0;
 };
 

@@ -160,15 +160,13 @@ TEST(Pictures, AVideoWithoutTimeStampsHasTheTimesOfItsRate) {
   const std::string file = "/usr/share/visp-images-data/ViSP-images/video/cube.mpeg";
   if (!fs::exists(file)) GTEST_SKIP() << "visp-images-data is not installed";
   const auto source = open_pictures(file);
-  std::vector<double> times;
-  for (int k = 0; k < 5; ++k) {
-    const auto picture = source->next();
-    ASSERT_TRUE(picture && picture->time_s);
-    times.push_back(*picture->time_s);
+  // The last picture of this stream has no stamp.
+  int number = 0;
+  while (const auto picture = source->next()) {
+    ASSERT_TRUE(picture->time_s);
+    EXPECT_NEAR(*picture->time_s, 0.04 * number++, 0.05);
   }
-  EXPECT_EQ(times[0], 0.0);
-  EXPECT_NEAR(times[4], 4.0 * times[1], 1e-9);
-  EXPECT_GT(times[1], 0.01);
+  EXPECT_EQ(number, 79);
 }
 
 TEST(Pictures, WhatIsNoVideoIsSaidToBeNone) {

@@ -17,9 +17,7 @@ namespace {
 /// What a room adds to the nominal scene: r 15 px, contrast 150, noise 4, blur 0.7 px.
 struct HardLight {
   std::string name;
-  double slope = 0.0;          ///< of the light, in grey levels of the ground per 100 px
-  double cover = 0.0;          ///< width of what covers the disc's edge, px
-  double cover_level = 120.0;  ///< its grey level
+  double slope = 0.0;  ///< of the light, in grey levels of the ground per 100 px
   double exposure = 1.0;
 };
 
@@ -40,12 +38,6 @@ HardLightResult measure_hard(const HardLight& light, const std::string& tracker,
                        15.0 * random.uniform(0.85, 1.0), random.uniform(-1.5, 1.5)};
     SyntheticImage image(100, 100, kGround);
     image.paint_ellipse(disc, 50.0);
-    if (light.cover > 0.0) {
-      const double angle = random.uniform(-kPi, kPi);
-      const double away = 15.0 + 10.0 - light.cover;
-      image.paint_rectangle(disc.u + away * std::cos(angle), disc.v + away * std::sin(angle), 20.0,
-                            40.0, angle, light.cover_level);
-    }
     image.slope_light(light.slope / kGround / 100.0, random.uniform(-kPi, kPi));
     image.expose_longer(light.exposure);
     const imaging::ImageFrame frame(image.expose(4.0, random));
@@ -85,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(All, HardLights,
                                            HardLight{"cover_2_px", 0.0, 2.0},
                                            HardLight{"cover_4_px_slope_10", 10.0, 4.0},
                                            HardLight{"dark_cover_3_px", 0.0, 3.0, 20.0},
-                                           HardLight{"clipped_ground", 0.0, 0.0, 120.0, 1.4}),
+                                           HardLight{"clipped_ground", 0.0, 1.4}),
                          [](const auto& test) { return test.param.name; });
 
 }  // namespace

@@ -44,7 +44,7 @@ struct DiscTrackerParameters {
   /// are found, and EllipseFeature::visible says so), strong noise, things that only look like a
   /// disc in their middle.
   bool robust = false;
-  double min_visible = 0.6;  ///< share of the outline that a covered disc must show
+  double min_visible = 0.8;  ///< share of the outline that a covered disc must show
 };
 
 /// Tracks a disc: vpDot2 from frame to frame, then the outline is fitted to the grey values by
