@@ -351,10 +351,16 @@ bool EdgeFitter::step() {
 // Steps until the ellipse has all but come to rest, with the model evaluated there.
 bool EdgeFitter::iterate(const vpImage<unsigned char>& image, const imaging::Window& bounds) {
   constexpr double kRest = 0.1;  // px: what is left then is a few hundredths of it
-  for (int iteration = 0; iteration < parameters_.max_iterations; ++iteration) {
+  // What stands for clipped pixels changes with the model: steps are small without being at the
+  // end.
+  constexpr double kClippedRest = 0.01;
+  const bool clipped = parameters_.robust && clipped_ > 0.0;
+  const int most = clipped ? 3 * parameters_.max_iterations : parameters_.max_iterations;
+  for (int iteration = 0; iteration < most; ++iteration) {
     if (!advance(image, bounds)) return false;
-    if (change_ < kRest && level_change_ < kLevelRest) return true;
+    if (change_ < (clipped ? kClippedRest : kRest) && level_change_ < kLevelRest) return true;
   }
+  if (clipped && change_ < kRest && level_change_ < kLevelRest) return true;
   // What the model leaves of the grey values, as under a slope of light, makes full steps overshoot
   // a sharp edge and swing about it without end; half steps settle.
   constexpr double kSwing = 0.2;           // px
