@@ -13,8 +13,9 @@ using imaging::Window;
 
 /// Pixels round the image of the box that holds a limb; the whole frame when part of it is behind
 /// the camera.
-Window image_box(const BodyPart& part, const Eigen::Isometry3d& cMw, const Intrinsics& k) {
-  const Window frame{0, 0, k.width, k.height};
+Window image_box(const BodyPart& part, const Eigen::Isometry3d& cMw, const CameraModel& model) {
+  const Window frame{0, 0, image_width(model), image_height(model)};
+  const double nearest_z = is_perspective(model) ? 0.05 : -1e9;
   const Eigen::Matrix3d to_world = part.A.inverse();
   const double across = part.round ? 1.0 : 1.0 + std::max(0.0, part.taper);
   double u0 = 1e9;
@@ -22,20 +23,24 @@ Window image_box(const BodyPart& part, const Eigen::Isometry3d& cMw, const Intri
   double u1 = -1e9;
   double v1 = -1e9;
   int behind = 0;
+  int unseen = 0;  // beyond a mirror's edge
   for (int i = 0; i < 8; ++i) {
     const Eigen::Vector3d q((i & 1) != 0 ? across : -across, (i & 2) != 0 ? across : -across,
                             (i & 4) != 0 ? 1.0 : (part.round ? -1.0 : 0.0));
     const Eigen::Vector3d p_c = cMw * (part.c + to_world * q);
-    if (p_c.z() < 0.05) ++behind;
-    const auto uv = project(k, p_c);
-    if (!uv) continue;
+    if (p_c.z() < nearest_z) ++behind;
+    const auto uv = project(model, p_c);
+    if (!uv) {
+      if (!is_perspective(model)) ++unseen;
+      continue;
+    }
     u0 = std::min(u0, uv->x());
     v0 = std::min(v0, uv->y());
     u1 = std::max(u1, uv->x());
     v1 = std::max(v1, uv->y());
   }
-  if (behind == 8) return {};
-  if (behind > 0 || u1 < u0) return frame;
+  if (behind == 8 || unseen == 8) return {};
+  if (behind > 0 || unseen > 0 || u1 < u0) return frame;
   const auto bounded = [](double pixel) { return std::clamp(pixel, -1e6, 1e6); };
   const double margin = 3.0 + 0.02 * std::max(u1 - u0, v1 - v0);  // the lens bends the edges
   const int left = static_cast<int>(std::floor(bounded(u0 - margin)));
@@ -55,11 +60,15 @@ inline float triangle(float x) {
 
 }  // namespace
 
-VIGIA_PIXEL_LOOP
-void BodyPartView::paint_row(const Constants& constants, const float* __restrict x,
-                             const float* __restrict y, int count, float* __restrict nearest,
-                             float* __restrict grey, unsigned char* __restrict hit) {
+template <bool kPerspective>
+VIGIA_PIXEL_BODY void BodyPartView::paint_row(const Constants& constants, const Rays& rays,
+                                              int count, float* __restrict nearest,
+                                              float* __restrict grey,
+                                              unsigned char* __restrict hit) {
   const Constants k = constants;
+  const float* __restrict x = rays.x;
+  const float* __restrict y = rays.y;
+  const float* __restrict rz = rays.z;
   // Sphere: |o + t d|² = 1. Frustum: qx² + qy² − (1 + taper·qz)² = 0.
   const float w0 = k.round > 0.5F ? k.origin[2] : 1.0F + k.taper * k.origin[2];
   const float sign = k.round > 0.5F ? 1.0F : -1.0F;
@@ -69,9 +78,10 @@ void BodyPartView::paint_row(const Constants& constants, const float* __restrict
   const float high = k.round > 0.5F ? 2.0F : 1.0F;
   const float c = k.origin[0] * k.origin[0] + k.origin[1] * k.origin[1] + sign * w0 * w0 - offset;
   for (int i = 0; i < count; ++i) {
-    const float dx = k.ray[0] * x[i] + k.ray[1] * y[i] + k.ray[2];
-    const float dy = k.ray[3] * x[i] + k.ray[4] * y[i] + k.ray[5];
-    const float dz = k.ray[6] * x[i] + k.ray[7] * y[i] + k.ray[8];
+    const float z = kPerspective ? 1.0F : rz[i];
+    const float dx = k.ray[0] * x[i] + k.ray[1] * y[i] + k.ray[2] * z;
+    const float dy = k.ray[3] * x[i] + k.ray[4] * y[i] + k.ray[5] * z;
+    const float dz = k.ray[6] * x[i] + k.ray[7] * y[i] + k.ray[8] * z;
     const float dw = scale * dz;
     const float a = dx * dx + dy * dy + sign * dw * dw;
     const float b = k.origin[0] * dx + k.origin[1] * dy + sign * w0 * dw;
@@ -88,8 +98,8 @@ void BodyPartView::paint_row(const Constants& constants, const float* __restrict
     const float ny = k.normal[3] * qx + k.normal[4] * qy + k.normal[5] * gw;
     const float nz = k.normal[6] * qx + k.normal[7] * qy + k.normal[8] * gw;
     const float per_length = 1.0F / std::sqrt(nx * nx + ny * ny + nz * nz + 1e-20F);
-    const float facing =
-        -(nx * x[i] + ny * y[i] + nz) * per_length / std::sqrt(x[i] * x[i] + y[i] * y[i] + 1.0F);
+    const float facing = -(nx * x[i] + ny * y[i] + nz * z) * per_length /
+                         std::sqrt(x[i] * x[i] + y[i] * y[i] + z * z);
     const float upward = (k.up[0] * nx + k.up[1] * ny + k.up[2] * nz) * per_length;
     const float cloth = triangle(7.0F * qz + 0.6F * qx) * triangle(3.0F * (qx - qy));
     const float shade = 0.55F + 0.30F * (facing > 0.0F ? facing : 0.0F) + 0.18F * upward;
@@ -101,8 +111,20 @@ void BodyPartView::paint_row(const Constants& constants, const float* __restrict
   }
 }
 
+VIGIA_PIXEL_LOOP
+void BodyPartView::paint_perspective(const Constants& constants, const Rays& rays, int count,
+                                     float* nearest, float* grey, unsigned char* hit) {
+  paint_row<true>(constants, rays, count, nearest, grey, hit);
+}
+
+VIGIA_PIXEL_LOOP
+void BodyPartView::paint_any(const Constants& constants, const Rays& rays, int count,
+                             float* nearest, float* grey, unsigned char* hit) {
+  paint_row<false>(constants, rays, count, nearest, grey, hit);
+}
+
 BodyPartView::BodyPartView(const BodyPart& part, const Eigen::Isometry3d& wMc,
-                           const Intrinsics& intrinsics)
+                           const CameraModel& model)
     : constants_{single(Eigen::Matrix3d(part.A * wMc.linear())),
                  single(Eigen::Vector3d(part.A * (wMc.translation() - part.c))),
                  single(Eigen::Matrix3d((part.A * wMc.linear()).transpose())),
@@ -111,11 +133,14 @@ BodyPartView::BodyPartView(const BodyPart& part, const Eigen::Isometry3d& wMc,
                  part.round ? 1.0F : 0.0F,
                  part.grey,
                  part.pattern},
-      box_(image_box(part, wMc.inverse(Eigen::Isometry), intrinsics)) {}
+      box_(image_box(part, wMc.inverse(Eigen::Isometry), model)) {}
 
-void BodyPartView::paint(const float* x, const float* y, int count, float* nearest, float* grey,
+void BodyPartView::paint(const Rays& rays, int count, float* nearest, float* grey,
                          unsigned char* hit) const {
-  paint_row(constants_, x, y, count, nearest, grey, hit);
+  if (rays.z == nullptr)
+    paint_perspective(constants_, rays, count, nearest, grey, hit);
+  else
+    paint_any(constants_, rays, count, nearest, grey, hit);
 }
 
 }  // namespace vigia::sim

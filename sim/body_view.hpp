@@ -1,11 +1,12 @@
 #pragma once
 
+#include "rays.hpp"
+
 #include <array>
 #include <vector>
 
 #include <Eigen/Geometry>
 
-#include "vigia/core/camera.hpp"
 #include "vigia/imaging/frame.hpp"
 #include "vigia/sim/body.hpp"
 
@@ -29,19 +30,18 @@ std::vector<BodyPart> body_parts(const Person& person);
 /// A limb as one exposure sees it.
 class BodyPartView {
  public:
-  BodyPartView(const BodyPart& part, const Eigen::Isometry3d& wMc, const Intrinsics& intrinsics);
+  BodyPartView(const BodyPart& part, const Eigen::Isometry3d& wMc, const CameraModel& model);
 
   /// Whole pixels round the image, clipped to the frame; may be empty.
   const imaging::Window& box() const { return box_; }
 
-  /// Where rays (x, y, 1) meet the limb nearer than inverse depth nearest[i]: takes nearest[i],
+  /// Where rays meet the limb nearer than inverse depth nearest[i]: takes nearest[i],
   /// sets hit[i] to 1 and grey[i].
-  void paint(const float* x, const float* y, int count, float* nearest, float* grey,
-             unsigned char* hit) const;
+  void paint(const Rays& rays, int count, float* nearest, float* grey, unsigned char* hit) const;
 
  private:
   struct Constants {
-    std::array<float, 9> ray;     ///< direction in the limb's coordinates from (x, y, 1)
+    std::array<float, 9> ray;     ///< direction in the limb's coordinates from the ray
     std::array<float, 3> origin;  ///< of the rays in the limb's coordinates
     std::array<float, 9> normal;  ///< from the limb's gradient to camera axes
     std::array<float, 3> up;      ///< the world's z in camera axes
@@ -50,8 +50,13 @@ class BodyPartView {
     float grey;
     float pattern;
   };
-  static void paint_row(const Constants& constants, const float* x, const float* y, int count,
-                        float* nearest, float* grey, unsigned char* hit);
+  template <bool kPerspective>
+  static void paint_row(const Constants& constants, const Rays& rays, int count, float* nearest,
+                        float* grey, unsigned char* hit);
+  static void paint_perspective(const Constants& constants, const Rays& rays, int count,
+                                float* nearest, float* grey, unsigned char* hit);
+  static void paint_any(const Constants& constants, const Rays& rays, int count, float* nearest,
+                        float* grey, unsigned char* hit);
 
   Constants constants_;
   imaging::Window box_;

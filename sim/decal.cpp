@@ -35,7 +35,11 @@ double outline_radius(DecalShape shape) {
 }
 
 /// Whether the decal can reach the image at all, judged by a sphere round it.
-bool may_be_seen(const Eigen::Vector3d& centre_c, double radius, const Intrinsics& k) {
+bool may_be_seen(const UnifiedOmni& omni, const Eigen::Vector3d& centre_c, double /*radius*/) {
+  return project(CameraModel{omni}, centre_c).has_value();
+}
+
+bool may_be_seen(const Intrinsics& k, const Eigen::Vector3d& centre_c, double radius) {
   const double depth = centre_c.z() - radius;
   if (depth <= 1e-3) return centre_c.z() + radius > 0.0;
   const auto uv = project(k, centre_c);
@@ -45,17 +49,20 @@ bool may_be_seen(const Eigen::Vector3d& centre_c, double radius, const Intrinsic
   return in_image(k, *uv, -reach);
 }
 
-/// Whole pixels round the image of the circle of radius @p radius, or an empty window.
-Window outline_box(const Eigen::Isometry3d& cMd, double radius, const Intrinsics& k, int samples) {
+/// Whole pixels round the image of the circle of radius @p radius, or an empty window. Only a
+/// mirror shows what it shows in part.
+Window outline_box(const Eigen::Isometry3d& cMd, double radius, const CameraModel& model,
+                   int samples) {
   double u0 = 1e9;
   double v0 = 1e9;
   double u1 = -1e9;
   double v1 = -1e9;
   for (int i = 0; i < samples; ++i) {
     const double angle = 2.0 * kPi * i / samples;
-    const auto uv =
-        project(k, cMd * Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), 0.0));
-    if (!uv) return {};
+    const auto uv = project(
+        model, cMd * Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), 0.0));
+    if (!uv && is_perspective(model)) return {};
+    if (!uv) continue;
     u0 = std::min(u0, uv->x());
     v0 = std::min(v0, uv->y());
     u1 = std::max(u1, uv->x());
@@ -127,14 +134,16 @@ struct BlobShape {
   }
 };
 
-template <typename Shape>
+template <typename Shape, bool kPerspective>
 inline void shape_row(const Footprint& k, const float* __restrict rx, const float* __restrict ry,
-                      int count, float* __restrict out) {
+                      const float* __restrict rz, int count, float* __restrict out) {
   const Footprint f = k;
   for (int i = 0; i < count; ++i) {
-    const float w = 1.0F / (f.H[6] * rx[i] + f.H[7] * ry[i] + f.H[8]);
-    const float x = (f.H[0] * rx[i] + f.H[1] * ry[i] + f.H[2]) * w;
-    const float y = (f.H[3] * rx[i] + f.H[4] * ry[i] + f.H[5]) * w;
+    const float z = kPerspective ? 1.0F : rz[i];
+    const float per_w = f.H[6] * rx[i] + f.H[7] * ry[i] + f.H[8] * z;
+    const float w = 1.0F / per_w;
+    const float x = (f.H[0] * rx[i] + f.H[1] * ry[i] + f.H[2] * z) * w;
+    const float y = (f.H[3] * rx[i] + f.H[4] * ry[i] + f.H[5] * z) * w;
     const Implicit shape = Shape::at(x, y);
     const float slope_u = shape.dx * f.x_u + shape.dy * f.y_u;
     const float slope_v = shape.dx * f.x_v + shape.dy * f.y_v;
@@ -142,76 +151,118 @@ inline void shape_row(const Footprint& k, const float* __restrict rx, const floa
     // The edge is spread over two pixels.
     const float share = 0.5F + 0.5F * shape.value / slope;
     out[i] = share < 0.0F ? 0.0F : (share > 1.0F ? 1.0F : share);
+    if (!kPerspective && per_w <= 0.0F) out[i] = 0.0F;  // behind
   }
 }
 
-void clutter_row(DecalShape shape, const Footprint& k, const float* x, const float* y, int count,
-                 float* out) {
+template <typename Shape>
+void shape_row(const Footprint& k, const Rays& rays, int count, float* out) {
+  if (rays.z == nullptr)
+    shape_row<Shape, true>(k, rays.x, rays.y, nullptr, count, out);
+  else
+    shape_row<Shape, false>(k, rays.x, rays.y, rays.z, count, out);
+}
+
+void clutter_row(DecalShape shape, const Footprint& k, const Rays& rays, int count, float* out) {
   switch (shape) {
     case DecalShape::ellipse:
-      return shape_row<EllipseShape>(k, x, y, count, out);
+      return shape_row<EllipseShape>(k, rays, count, out);
     case DecalShape::ring:
-      return shape_row<RingShape>(k, x, y, count, out);
+      return shape_row<RingShape>(k, rays, count, out);
     case DecalShape::square:
-      return shape_row<SquareShape>(k, x, y, count, out);
+      return shape_row<SquareShape>(k, rays, count, out);
     case DecalShape::half_disc:
-      return shape_row<HalfDiscShape>(k, x, y, count, out);
+      return shape_row<HalfDiscShape>(k, rays, count, out);
     default:
-      return shape_row<BlobShape>(k, x, y, count, out);
+      return shape_row<BlobShape>(k, rays, count, out);
   }
 }
 
 /// Share of pixels in the square |x|, |y| ≤ 1, from the distances to its sides in pixels.
-VIGIA_PIXEL_LOOP
-void square_row(const std::array<float, 9>& H, float px_per_x, float px_per_y,
-                const float* __restrict rx, const float* __restrict ry, int count,
-                float* __restrict out) {
+template <bool kPerspective>
+VIGIA_PIXEL_BODY void square_rays(const std::array<float, 9>& H, float px_per_x, float px_per_y,
+                                  const float* __restrict rx, const float* __restrict ry,
+                                  const float* __restrict rz, int count, float* __restrict out) {
   const std::array<float, 9> h = H;
   for (int i = 0; i < count; ++i) {
-    const float w = 1.0F / (h[6] * rx[i] + h[7] * ry[i] + h[8]);
-    const float x = (h[0] * rx[i] + h[1] * ry[i] + h[2]) * w;
-    const float y = (h[3] * rx[i] + h[4] * ry[i] + h[5]) * w;
+    const float z = kPerspective ? 1.0F : rz[i];
+    const float per_w = h[6] * rx[i] + h[7] * ry[i] + h[8] * z;
+    const float w = 1.0F / per_w;
+    const float x = (h[0] * rx[i] + h[1] * ry[i] + h[2] * z) * w;
+    const float y = (h[3] * rx[i] + h[4] * ry[i] + h[5] * z) * w;
     float across = 0.5F + (1.0F - std::abs(x)) * px_per_x;
     float down = 0.5F + (1.0F - std::abs(y)) * px_per_y;
     across = across < 0.0F ? 0.0F : (across > 1.0F ? 1.0F : across);
     down = down < 0.0F ? 0.0F : (down > 1.0F ? 1.0F : down);
     out[i] = across * down;
+    if (!kPerspective && per_w <= 0.0F) out[i] = 0.0F;  // behind
   }
+}
+
+VIGIA_PIXEL_LOOP
+void square_perspective(const std::array<float, 9>& H, float px_per_x, float px_per_y,
+                        const Rays& rays, int count, float* out) {
+  square_rays<true>(H, px_per_x, px_per_y, rays.x, rays.y, nullptr, count, out);
+}
+
+VIGIA_PIXEL_LOOP
+void square_any(const std::array<float, 9>& H, float px_per_x, float px_per_y, const Rays& rays,
+                int count, float* out) {
+  square_rays<false>(H, px_per_x, px_per_y, rays.x, rays.y, rays.z, count, out);
+}
+
+/// How a point of the decal's plane moves with the pixel at the decal's centre, whose image exists.
+Eigen::Matrix2d centre_scale(const UnifiedOmni& omni, const Eigen::Matrix3d& dHray,
+                             const Eigen::Vector3d& centre_c) {
+  const CameraModel model = omni;
+  const Eigen::Vector3d direction = centre_c.normalized();
+  const double w = dHray.row(2).dot(direction);
+  const auto uv = project(model, centre_c);
+  const auto dr_duv = uv ? ray_jacobian(model, *uv) : std::nullopt;
+  if (!dr_duv) return Eigen::Matrix2d::Identity();
+  return dHray.topRows<2>() * *dr_duv / w;  // the centre is the plane's origin
+}
+
+Eigen::Matrix2d centre_scale(const Intrinsics& intrinsics, const Eigen::Matrix3d& dHray,
+                             const Eigen::Vector3d& centre_c) {
+  const Eigen::Vector2d xy = centre_c.head<2>() / centre_c.z();
+  const Eigen::Vector3d w = dHray * xy.homogeneous();
+  const Eigen::Matrix2d dd_dxy = dHray.topLeftCorner<2, 2>() / w.z();
+  const auto uv = distort(intrinsics, xy);
+  if (!uv) return Eigen::Matrix2d::Identity();
+  return dd_dxy * distort_jacobian(intrinsics, *uv).inverse();
 }
 
 }  // namespace
 
-DecalView::DecalView(const Decal& decal, const Eigen::Isometry3d& cMw, const Intrinsics& intrinsics,
+DecalView::DecalView(const Decal& decal, const Eigen::Isometry3d& cMw, const CameraModel& model,
                      double blur_px)
-    : decal_(&decal), intrinsics_(&intrinsics), blur_px_(blur_px) {
+    : decal_(&decal), model_(&model), blur_px_(blur_px) {
   const double radius = decal.size_m * outline_radius(decal.shape);
   const Eigen::Vector3d centre_c = cMw * decal.wMd.translation();
-  if (!may_be_seen(centre_c, radius, intrinsics)) return;
+  const bool may_be =
+      std::visit([&](const auto& m) { return may_be_seen(m, centre_c, radius); }, model);
+  if (!may_be) return;
   const Eigen::Isometry3d cMd = cMw * decal.wMd;
   if (cMd.linear().col(2).dot(centre_c) >= 0.0) return;  // seen from behind
 
-  const Window frame{0, 0, intrinsics.width, intrinsics.height};
+  const Window frame{0, 0, image_width(model), image_height(model)};
   const int margin = decal.blurred ? blur_margin(blur_px) : 1;
-  box_ =
-      intersect(grown(outline_box(cMd, radius, intrinsics, decal.blurred ? 32 : 8), margin), frame);
+  box_ = intersect(grown(outline_box(cMd, radius, model, decal.blurred ? 32 : 8), margin), frame);
   if (box_.empty()) return;
 
   Eigen::Matrix3d cHd;
   cHd << decal.size_m * cMd.linear().col(0), decal.size_m * cMd.linear().col(1), centre_c;
   dHray_ = cHd.inverse();
-  const Eigen::Vector2d xy = centre_c.head<2>() / centre_c.z();
-  const Eigen::Vector3d w = dHray_ * xy.homogeneous();
-  const Eigen::Matrix2d dd_dxy = dHray_.topLeftCorner<2, 2>() / w.z();
-  if (const auto uv = distort(intrinsics, xy))
-    dxy_duv_ = dd_dxy * distort_jacobian(intrinsics, *uv).inverse();
+  dxy_duv_ = std::visit([&](const auto& m) { return centre_scale(m, dHray_, centre_c); }, model);
 }
 
-void DecalView::coverage(int u, int v, int count, const float* x, const float* y, float* out) {
+void DecalView::coverage(int u, int v, int count, const Rays& rays, float* out) {
   if (!decal_->blurred) {
     const Footprint footprint{
         single(dHray_), static_cast<float>(dxy_duv_(0, 0)), static_cast<float>(dxy_duv_(0, 1)),
         static_cast<float>(dxy_duv_(1, 0)), static_cast<float>(dxy_duv_(1, 1))};
-    clutter_row(decal_->shape, footprint, x, y, count, out);
+    clutter_row(decal_->shape, footprint, rays, count, out);
     return;
   }
   if (blurred_.empty()) compute_blurred();
@@ -229,9 +280,9 @@ void DecalView::compute_blurred() {
     const Eigen::JacobiSVD<Eigen::Matrix2d> size(dxy_duv_);
     const double a = 1.0 / size.singularValues()(1);
     const double b = 1.0 / size.singularValues()(0);
-    blurred_ = conic_coverage(Q, *intrinsics_, window, b * b / a);
+    blurred_ = conic_coverage(Q, dHray_.row(2), *model_, window, b * b / a);
   } else if (decal_->shape == DecalShape::tag) {
-    blurred_ = tag_coverage(decal_->fields, dHray_, *intrinsics_, window);
+    blurred_ = tag_coverage(decal_->fields, dHray_, *model_, window);
   } else {
     blurred_ = square_coverage(window);
   }
@@ -243,13 +294,16 @@ std::vector<float> DecalView::square_coverage(const Window& window) const {
   std::vector<float> coverage(width * static_cast<std::size_t>(window.height));
   std::vector<float> x(width);
   std::vector<float> y(width);
+  std::vector<float> z(width);
+  const bool perspective = is_perspective(*model_);
+  const Rays rays{x.data(), y.data(), perspective ? nullptr : z.data()};
   const auto px_per_x = static_cast<float>(1.0 / dxy_duv_.row(0).norm());
   const auto px_per_y = static_cast<float>(1.0 / dxy_duv_.row(1).norm());
   const std::array<float, 9> H = single(dHray_);
   float* out = coverage.data();
   for (int v = window.v; v < window.bottom(); ++v, out += width) {
-    row_rays(*intrinsics_, window.u, v, window.width, x.data(), y.data());
-    square_row(H, px_per_x, px_per_y, x.data(), y.data(), window.width, out);
+    row_rays(*model_, window.u, v, window.width, x.data(), y.data(), z.data());
+    (perspective ? square_perspective : square_any)(H, px_per_x, px_per_y, rays, window.width, out);
   }
   return coverage;
 }

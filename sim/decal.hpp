@@ -1,12 +1,13 @@
 #pragma once
 
+#include "rays.hpp"
+
 #include <array>
 #include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "vigia/core/camera.hpp"
 #include "vigia/imaging/frame.hpp"
 #include "vigia/imaging/tag_bitmap.hpp"
 #include "vigia/sim/appearance.hpp"
@@ -32,26 +33,25 @@ struct Decal {
 class DecalView {
  public:
   /// Empty box when the decal has no image in the frame.
-  DecalView(const Decal& decal, const Eigen::Isometry3d& cMw, const Intrinsics& intrinsics,
+  DecalView(const Decal& decal, const Eigen::Isometry3d& cMw, const CameraModel& model,
             double blur_px);
 
   const imaging::Window& box() const { return box_; }
   const Decal& decal() const { return *decal_; }
 
-  /// Coverage of @p count pixels of row @p v from @p u on, which lie in the box and whose rays are
-  /// (x, y, 1). Landmarks are computed as a whole the first time, so that a pixel never depends on
-  /// the window.
-  void coverage(int u, int v, int count, const float* x, const float* y, float* out);
+  /// Coverage of @p count pixels of row @p v from @p u on, which lie in the box. Landmarks are
+  /// computed as a whole the first time, so that a pixel never depends on the window.
+  void coverage(int u, int v, int count, const Rays& rays, float* out);
 
  private:
   void compute_blurred();
   std::vector<float> square_coverage(const imaging::Window& window) const;
 
   const Decal* decal_;
-  const Intrinsics* intrinsics_;
+  const CameraModel* model_;
   double blur_px_;
   imaging::Window box_;
-  Eigen::Matrix3d dHray_ = Eigen::Matrix3d::Identity();    ///< ray (x, y, 1) → decal, size_m = 1
+  Eigen::Matrix3d dHray_ = Eigen::Matrix3d::Identity();    ///< ray → decal, size_m = 1
   Eigen::Matrix2d dxy_duv_ = Eigen::Matrix2d::Identity();  ///< at the decal's centre
   std::vector<float> blurred_;
 };

@@ -16,13 +16,22 @@ struct LocalConic {
   double a, b, c, d, e, f;
 };
 
-LocalConic localise(const Eigen::Matrix3d& Q, const Intrinsics& k, int u, int v) {
+/// A pixel's ray and how it moves with the pixel.
+struct MovingRay {
+  Eigen::Vector3d r, r_u, r_v;
+};
+
+MovingRay moving_ray(const Intrinsics& k, int u, int v) {
   const double x = (u - k.u0) / k.px;
   const double y = (v - k.v0) / k.py;
   const double scale = 1.0 + k.kdu * (x * x + y * y);
-  const Eigen::Vector3d r(scale * x, scale * y, 1.0);
-  const Eigen::Vector3d r_u((scale + 2.0 * k.kdu * x * x) / k.px, 2.0 * k.kdu * x * y / k.px, 0.0);
-  const Eigen::Vector3d r_v(2.0 * k.kdu * x * y / k.py, (scale + 2.0 * k.kdu * y * y) / k.py, 0.0);
+  return {{scale * x, scale * y, 1.0},
+          {(scale + 2.0 * k.kdu * x * x) / k.px, 2.0 * k.kdu * x * y / k.px, 0.0},
+          {2.0 * k.kdu * x * y / k.py, (scale + 2.0 * k.kdu * y * y) / k.py, 0.0}};
+}
+
+LocalConic localise(const Eigen::Matrix3d& Q, const MovingRay& at) {
+  const auto& [r, r_u, r_v] = at;
   const Eigen::Vector3d Qr = Q * r;
   const Eigen::Vector3d Qu = Q * r_u;
   LocalConic q{r_u.dot(Qu),       2.0 * r_v.dot(Qu), r_v.dot(Q * r_v),
@@ -110,13 +119,14 @@ std::vector<float> gaussian_kernel(double sigma) {
   return kernel;
 }
 
-}  // namespace
+float covered_share(const LocalConic& q) {
+  return std::abs(q.d) >= std::abs(q.e) ? covered_share(q.a, q.b, q.c, q.d, q.e, q.f)
+                                        : covered_share(q.c, q.b, q.a, q.e, q.d, q.f);
+}
 
-std::vector<float> conic_coverage(const Eigen::Matrix3d& Q, const Intrinsics& intrinsics,
-                                  const imaging::Window& window, double least_curvature_px) {
-  // Half a pixel's diagonal is 0.71. The first-order distance is up to 1.09 times the true one
-  // where the radius of curvature exceeds 5 px; below that every pixel is cut.
-  const float band = least_curvature_px > 5.0 ? 0.85F : 1e30F;
+std::vector<float> coverage_through(const Intrinsics& intrinsics, const Eigen::Matrix3d& Q,
+                                    const Eigen::Vector3d& /*front*/, const imaging::Window& window,
+                                    float band) {
   const auto entry = [&](int i, int j) { return static_cast<float>(Q(i, j)); };
   Row row{{entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)},
           static_cast<float>((window.u - intrinsics.u0) / intrinsics.px),
@@ -130,17 +140,44 @@ std::vector<float> conic_coverage(const Eigen::Matrix3d& Q, const Intrinsics& in
   for (int v = window.v; v < window.bottom(); ++v, out += window.width) {
     row.y = static_cast<float>((v - intrinsics.v0) / intrinsics.py);
     signed_distance(row, window.width, out);
-    for (int i = 0; i < window.width; ++i) {
-      if (std::abs(out[i]) > band) {
-        out[i] = out[i] > 0.0F ? 1.0F : 0.0F;
-        continue;
-      }
-      const LocalConic q = localise(Q, intrinsics, window.u + i, v);
-      out[i] = std::abs(q.d) >= std::abs(q.e) ? covered_share(q.a, q.b, q.c, q.d, q.e, q.f)
-                                              : covered_share(q.c, q.b, q.a, q.e, q.d, q.f);
+    for (int i = 0; i < window.width; ++i)
+      out[i] = std::abs(out[i]) > band
+                   ? (out[i] > 0.0F ? 1.0F : 0.0F)
+                   : covered_share(localise(Q, moving_ray(intrinsics, window.u + i, v)));
+  }
+  return coverage;
+}
+
+std::vector<float> coverage_through(const UnifiedOmni& omni, const Eigen::Matrix3d& Q,
+                                    const Eigen::Vector3d& front, const imaging::Window& window,
+                                    float band) {
+  const CameraModel model = omni;
+  std::vector<float> coverage(static_cast<std::size_t>(window.width) *
+                              static_cast<std::size_t>(window.height));
+  float* out = coverage.data();
+  for (int v = window.v; v < window.bottom(); ++v) {
+    for (int u = window.u; u < window.right(); ++u, ++out) {
+      const Eigen::Vector2d uv(u, v);
+      const auto r = ray(model, uv);
+      if (!r || front.dot(*r) <= 0.0) continue;
+      const auto dr_duv = *ray_jacobian(model, uv);
+      const LocalConic q = localise(Q, {*r, dr_duv.col(0), dr_duv.col(1)});
+      *out = std::abs(q.f) > band ? (q.f > 0.0 ? 1.0F : 0.0F) : covered_share(q);
     }
   }
   return coverage;
+}
+
+}  // namespace
+
+std::vector<float> conic_coverage(const Eigen::Matrix3d& Q, const Eigen::Vector3d& front,
+                                  const CameraModel& model, const imaging::Window& window,
+                                  double min_curvature_px) {
+  // Half a pixel's diagonal is 0.71. The first-order distance is up to 1.09 times the true one
+  // where the radius of curvature exceeds 5 px; below that every pixel is cut.
+  const float band = min_curvature_px > 5.0 ? 0.85F : 1e30F;
+  return std::visit([&](const auto& m) { return coverage_through(m, Q, front, window, band); },
+                    model);
 }
 
 int blur_margin(double sigma) {

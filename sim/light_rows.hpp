@@ -1,5 +1,7 @@
 #pragma once
 
+#include "rays.hpp"
+
 #include <array>
 
 #include <Eigen/Geometry>
@@ -13,10 +15,9 @@ class LightRows {
  public:
   LightRows(const LightNow& light, const Eigen::Isometry3d& cMw);
 
-  /// Multiplies grey[i], the light that comes from depth 1/inverse_depth[i] on the ray (x, y, 1),
+  /// Multiplies grey[i], the light that comes from depth 1/inverse_depth[i] on the ray,
   /// by the gain there.
-  void apply(const float* x, const float* y, const float* inverse_depth, int count,
-             float* grey) const;
+  void apply(const Rays& rays, const float* inverse_depth, int count, float* grey) const;
 
  private:
   struct Constants {
@@ -24,8 +25,13 @@ class LightRows {
     float ambient;
     float per_width;
   };
-  static void apply_row(const Constants& constants, const float* x, const float* y,
-                        const float* inverse_depth, int count, float* grey);
+  template <bool kPerspective>
+  static void apply_row(const Constants& constants, const Rays& rays, const float* inverse_depth,
+                        int count, float* grey);
+  static void apply_perspective(const Constants& constants, const Rays& rays,
+                                const float* inverse_depth, int count, float* grey);
+  static void apply_any(const Constants& constants, const Rays& rays, const float* inverse_depth,
+                        int count, float* grey);
 
   Constants constants_{};
 };

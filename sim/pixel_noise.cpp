@@ -60,10 +60,16 @@ void noisy_row(const float* __restrict value, const float* __restrict table, flo
   }
 }
 
+/// Cameras that expose at once have noise of their own. That of camera 0 is the seed's.
+std::uint64_t of_camera(std::uint64_t seed, CameraId camera) {
+  if (camera == 0) return seed;
+  return derive_seed(derive_seed(seed, "camera"), static_cast<std::uint64_t>(camera));
+}
+
 }  // namespace
 
-PixelNoise::PixelNoise(std::uint64_t seed, Stamp stamp)
-    : key_(derive_seed(seed, static_cast<std::uint64_t>(stamp.ns))) {}
+PixelNoise::PixelNoise(std::uint64_t seed, CameraId camera, Stamp stamp)
+    : key_(derive_seed(of_camera(seed, camera), static_cast<std::uint64_t>(stamp.ns))) {}
 
 void PixelNoise::add_and_round(const float* value, float sigma, int u, int v, int channel,
                                int count, unsigned char* out) const {

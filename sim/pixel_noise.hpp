@@ -2,15 +2,15 @@
 
 #include <cstdint>
 
-#include "vigia/core/stamp.hpp"
+#include "vigia/core/shot.hpp"
 
 namespace vigia::sim {
 
-/// Noise of one exposure: a standard normal number for each pixel, a function of seed, stamp,
-/// channel, u and v alone.
+/// Noise of one exposure: a standard normal number for each pixel, a function of seed, camera,
+/// stamp, channel, u and v alone.
 class PixelNoise {
  public:
-  PixelNoise(std::uint64_t seed, Stamp stamp);
+  PixelNoise(std::uint64_t seed, CameraId camera, Stamp stamp);
 
   /// out[i] = clamp(round(value[i] + sigma · noise(u + i, v))), 0…255.
   void add_and_round(const float* value, float sigma, int u, int v, int channel, int count,

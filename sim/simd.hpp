@@ -8,3 +8,6 @@
 #else
 #define VIGIA_PIXEL_LOOP
 #endif
+
+// The body of pixel loops that differ in a constant: compiled into each of them.
+#define VIGIA_PIXEL_BODY inline __attribute__((always_inline))

@@ -55,6 +55,11 @@ Linear minus(const Linear& f, const Linear& g) {
   return {f.a - g.a, f.b - g.b, f.c - g.c};
 }
 
+/// How far from its value in the middle of the box @p f gets.
+float reach(const Linear& f, const RayBox& box) {
+  return std::abs(f.a) * box.hx + std::abs(f.b) * box.hy + std::abs(f.c) * box.hz;
+}
+
 bool covers(const SurfaceView& view, const RayBox& box) {
   for (int i = 0; i < view.edge_count; ++i)
     if (minimum(view.edges[static_cast<std::size_t>(i)], box) <= 0.0F) return false;
@@ -110,18 +115,19 @@ struct ShadeConstants {
   ProfileTable along_s, along_t;
 };
 
-VIGIA_PIXEL_LOOP
-void shade_loop(const ShadeConstants& k, const std::uint32_t* __restrict tile,
-                const float* __restrict x, const float* __restrict y, int count,
-                float* __restrict grey) {
+template <bool kPerspective>
+VIGIA_PIXEL_BODY void shade_rays(const ShadeConstants& k, const std::uint32_t* __restrict tile,
+                                 const float* __restrict x, const float* __restrict y,
+                                 const float* __restrict rz, int count, float* __restrict grey) {
   constexpr float kFine = NoiseTile::kSize * 256.0F;  // one tile a metre; coarse: one in 8 m
   constexpr float kFar = 3e4F;
   const ShadeConstants c = k;
   for (int i = 0; i < count; ++i) {
-    const float inverse_depth = c.depth.a * x[i] + c.depth.b * y[i] + c.depth.c;
+    const float z = kPerspective ? 1.0F : rz[i];
+    const float inverse_depth = c.depth.a * x[i] + c.depth.b * y[i] + c.depth.c * z;
     const float depth = 1.0F / inverse_depth;
-    float s = (c.s.a * x[i] + c.s.b * y[i] + c.s.c) * depth;
-    float t = (c.t.a * x[i] + c.t.b * y[i] + c.t.c) * depth;
+    float s = (c.s.a * x[i] + c.s.b * y[i] + c.s.c * z) * depth;
+    float t = (c.t.a * x[i] + c.t.b * y[i] + c.t.c * z) * depth;
     s = s > -kFar ? s : -kFar;
     s = s < kFar ? s : kFar;
     t = t > -kFar ? t : -kFar;
@@ -140,25 +146,112 @@ void shade_loop(const ShadeConstants& k, const std::uint32_t* __restrict tile,
 }
 
 VIGIA_PIXEL_LOOP
-void nearest_loop(const std::array<Linear, 4>& edges, const Linear& depth, ViewId id,
-                  const float* __restrict x, const float* __restrict y, int count,
-                  float* __restrict nearest, ViewId* __restrict winner) {
+void shade_perspective(const ShadeConstants& k, const std::uint32_t* tile, const Rays& rays,
+                       int count, float* grey) {
+  shade_rays<true>(k, tile, rays.x, rays.y, nullptr, count, grey);
+}
+VIGIA_PIXEL_LOOP
+void shade_any(const ShadeConstants& k, const std::uint32_t* tile, const Rays& rays, int count,
+               float* grey) {
+  shade_rays<false>(k, tile, rays.x, rays.y, rays.z, count, grey);
+}
+
+template <bool kPerspective>
+VIGIA_PIXEL_BODY void nearest_rays(const std::array<Linear, 4>& edges, const Linear& depth,
+                                   ViewId id, const float* __restrict x, const float* __restrict y,
+                                   const float* __restrict rz, int count, float* __restrict nearest,
+                                   ViewId* __restrict winner) {
   const Linear e0 = edges[0];
   const Linear e1 = edges[1];
   const Linear e2 = edges[2];
   const Linear e3 = edges[3];
   const Linear d = depth;
   for (int i = 0; i < count; ++i) {
-    const float inverse_depth = d.a * x[i] + d.b * y[i] + d.c;
-    const float f0 = e0.a * x[i] + e0.b * y[i] + e0.c;
-    const float f1 = e1.a * x[i] + e1.b * y[i] + e1.c;
-    const float f2 = e2.a * x[i] + e2.b * y[i] + e2.c;
-    const float f3 = e3.a * x[i] + e3.b * y[i] + e3.c;
+    const float z = kPerspective ? 1.0F : rz[i];
+    const float inverse_depth = d.a * x[i] + d.b * y[i] + d.c * z;
+    const float f0 = e0.a * x[i] + e0.b * y[i] + e0.c * z;
+    const float f1 = e1.a * x[i] + e1.b * y[i] + e1.c * z;
+    const float f2 = e2.a * x[i] + e2.b * y[i] + e2.c * z;
+    const float f3 = e3.a * x[i] + e3.b * y[i] + e3.c * z;
     const bool hit =
         (f0 >= 0.0F) & (f1 >= 0.0F) & (f2 >= 0.0F) & (f3 >= 0.0F) & (inverse_depth > nearest[i]);
     nearest[i] = hit ? inverse_depth : nearest[i];
     winner[i] = hit ? id : winner[i];
   }
+}
+
+VIGIA_PIXEL_LOOP
+void nearest_perspective(const SurfaceView& view, ViewId id, const Rays& rays, int count,
+                         float* nearest, ViewId* winner) {
+  nearest_rays<true>(view.edges, view.inverse_depth, id, rays.x, rays.y, nullptr, count, nearest,
+                     winner);
+}
+VIGIA_PIXEL_LOOP
+void nearest_any(const SurfaceView& view, ViewId id, const Rays& rays, int count, float* nearest,
+                 ViewId* winner) {
+  nearest_rays<false>(view.edges, view.inverse_depth, id, rays.x, rays.y, rays.z, count, nearest,
+                      winner);
+}
+
+VIGIA_PIXEL_LOOP
+void evaluate_perspective(const Linear& f, const float* __restrict x, const float* __restrict y,
+                          int count, float* __restrict out) {
+  const Linear k = f;
+  for (int i = 0; i < count; ++i) out[i] = k.a * x[i] + k.b * y[i] + k.c;
+}
+VIGIA_PIXEL_LOOP
+void evaluate_any(const Linear& f, const float* __restrict x, const float* __restrict y,
+                  const float* __restrict z, int count, float* __restrict out) {
+  const Linear k = f;
+  for (int i = 0; i < count; ++i) out[i] = k.a * x[i] + k.b * y[i] + k.c * z[i];
+}
+
+/// Every unit direction.
+constexpr RayBox kAllRays{0.0F, 0.0F, 0.0F, 1.0F, 1.0F, 1.0F};
+
+/// From nine samples. Between them a smooth direction strays from what they span by no more than
+/// half of what they differ among themselves.
+RayBox box_of_rays(const UnifiedOmni& omni, int u0, int u1, int v0, int v1) {
+  Eigen::Array3d low = Eigen::Array3d::Constant(2.0);
+  Eigen::Array3d high = -low;
+  for (const double u : {1.0 * u0, 0.5 * (u0 + u1), 1.0 * u1}) {
+    for (const double v : {1.0 * v0, 0.5 * (v0 + v1), 1.0 * v1}) {
+      const auto seen = ray(CameraModel{omni}, {u, v});
+      if (!seen) return kAllRays;  // a pixel may show nothing
+      low = low.min(seen->array());
+      high = high.max(seen->array());
+    }
+  }
+  const Eigen::Array3f middle = (0.5 * (low + high)).cast<float>();
+  const Eigen::Array3f half = ((high - low) + 1e-5).cast<float>();
+  return {middle.x(), middle.y(), middle.z(), half.x(), half.y(), half.z()};
+}
+
+RayBox box_of_rays(const Intrinsics& intrinsics, int u0, int u1, int v0, int v1) {
+  const double x0 = (u0 - intrinsics.u0) / intrinsics.px;
+  const double x1 = (u1 - intrinsics.u0) / intrinsics.px;
+  const double y0 = (v0 - intrinsics.v0) / intrinsics.py;
+  const double y1 = (v1 - intrinsics.v0) / intrinsics.py;
+  const auto nearest_square = [](double a, double b) {
+    return a * b <= 0.0 ? 0.0 : std::min(a * a, b * b);
+  };
+  const double r2_low = nearest_square(x0, x1) + nearest_square(y0, y1);
+  const double r2_high = std::max(x0 * x0, x1 * x1) + std::max(y0 * y0, y1 * y1);
+  const double scale_a = 1.0 + intrinsics.kdu * r2_low;
+  const double scale_b = 1.0 + intrinsics.kdu * r2_high;
+  const auto stretch = [low = std::min(scale_a, scale_b), high = std::max(scale_a, scale_b)](
+                           double a, double b) {
+    return std::pair{std::min(a * low, a * high), std::max(b * low, b * high)};
+  };
+  const auto [left, right] = stretch(x0, x1);
+  const auto [top, bottom] = stretch(y0, y1);
+  constexpr double kSlack = 1.0 + 1e-5;  // covers the rounding to single precision
+  return {static_cast<float>(0.5 * (left + right)),
+          static_cast<float>(0.5 * (top + bottom)),
+          1.0F,
+          static_cast<float>(0.5 * (right - left) * kSlack + 1e-6),
+          static_cast<float>(0.5 * (bottom - top) * kSlack + 1e-6),
+          0.0F};
 }
 
 }  // namespace
@@ -208,35 +301,15 @@ Surface board_surface(const Eigen::Isometry3d& wMl, double half_width_m, const M
 }
 
 float minimum(const Linear& f, const RayBox& box) {
-  return f.a * box.x + f.b * box.y + f.c - (std::abs(f.a) * box.hx + std::abs(f.b) * box.hy);
+  return f.a * box.x + f.b * box.y + f.c * box.z - reach(f, box);
 }
 
 float maximum(const Linear& f, const RayBox& box) {
-  return f.a * box.x + f.b * box.y + f.c + (std::abs(f.a) * box.hx + std::abs(f.b) * box.hy);
+  return f.a * box.x + f.b * box.y + f.c * box.z + reach(f, box);
 }
 
-RayBox ray_box(const Intrinsics& intrinsics, int u0, int u1, int v0, int v1) {
-  const double x0 = (u0 - intrinsics.u0) / intrinsics.px;
-  const double x1 = (u1 - intrinsics.u0) / intrinsics.px;
-  const double y0 = (v0 - intrinsics.v0) / intrinsics.py;
-  const double y1 = (v1 - intrinsics.v0) / intrinsics.py;
-  const auto nearest_square = [](double a, double b) {
-    return a * b <= 0.0 ? 0.0 : std::min(a * a, b * b);
-  };
-  const double r2_low = nearest_square(x0, x1) + nearest_square(y0, y1);
-  const double r2_high = std::max(x0 * x0, x1 * x1) + std::max(y0 * y0, y1 * y1);
-  const double scale_a = 1.0 + intrinsics.kdu * r2_low;
-  const double scale_b = 1.0 + intrinsics.kdu * r2_high;
-  const auto stretch = [low = std::min(scale_a, scale_b), high = std::max(scale_a, scale_b)](
-                           double a, double b) {
-    return std::pair{std::min(a * low, a * high), std::max(b * low, b * high)};
-  };
-  const auto [left, right] = stretch(x0, x1);
-  const auto [top, bottom] = stretch(y0, y1);
-  constexpr double kSlack = 1.0 + 1e-5;  // covers the rounding to single precision
-  return {static_cast<float>(0.5 * (left + right)), static_cast<float>(0.5 * (top + bottom)),
-          static_cast<float>(0.5 * (right - left) * kSlack + 1e-6),
-          static_cast<float>(0.5 * (bottom - top) * kSlack + 1e-6)};
+RayBox ray_box(const CameraModel& model, int u0, int u1, int v0, int v1) {
+  return std::visit([&](const auto& m) { return box_of_rays(m, u0, u1, v0, v1); }, model);
 }
 
 bool make_view(const Surface& surface, const Eigen::Isometry3d& cMw, double focal_px,
@@ -258,7 +331,7 @@ bool make_view(const Surface& surface, const Eigen::Isometry3d& cMw, double foca
 
   const std::size_t n = surface.corners_w.size();
   view.edge_count = static_cast<int>(n);
-  view.edges.fill({0.0F, 0.0F, 1.0F});
+  view.edges.fill({});  // every ray is inside an edge that is not there
   std::array<Eigen::Vector3d, 4> corners_c;
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < n; ++i) {
@@ -290,8 +363,8 @@ void visible_in(const std::vector<SurfaceView>& views, const std::vector<ViewId>
   }
 }
 
-void shade(const SurfaceView& view, const std::uint32_t* tile, const float* x, const float* y,
-           int count, float* grey) {
+void shade(const SurfaceView& view, const std::uint32_t* tile, const Rays& rays, int count,
+           float* grey) {
   const Material& m = *view.material;
   const ShadeConstants constants{view.inverse_depth,
                                  view.s,
@@ -305,12 +378,25 @@ void shade(const SurfaceView& view, const std::uint32_t* tile, const float* x, c
                                  m.along_t.repeats ? 0.0F : 1.0F,
                                  table_of(m.along_s),
                                  table_of(m.along_t)};
-  shade_loop(constants, tile, x, y, count, grey);
+  if (rays.z == nullptr)
+    shade_perspective(constants, tile, rays, count, grey);
+  else
+    shade_any(constants, tile, rays, count, grey);
 }
 
-void take_nearest(const SurfaceView& view, ViewId id, const float* x, const float* y, int count,
-                  float* nearest, ViewId* winner) {
-  nearest_loop(view.edges, view.inverse_depth, id, x, y, count, nearest, winner);
+void evaluate(const Linear& f, const Rays& rays, int count, float* out) {
+  if (rays.z == nullptr)
+    evaluate_perspective(f, rays.x, rays.y, count, out);
+  else
+    evaluate_any(f, rays.x, rays.y, rays.z, count, out);
+}
+
+void take_nearest(const SurfaceView& view, ViewId id, const Rays& rays, int count, float* nearest,
+                  ViewId* winner) {
+  if (rays.z == nullptr)
+    nearest_perspective(view, id, rays, count, nearest, winner);
+  else
+    nearest_any(view, id, rays, count, nearest, winner);
 }
 
 }  // namespace vigia::sim

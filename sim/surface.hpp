@@ -1,5 +1,6 @@
 #pragma once
 
+#include "rays.hpp"
 #include "texture.hpp"
 
 #include <array>
@@ -9,7 +10,6 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "vigia/core/camera.hpp"
 #include "vigia/core/floor_plan.hpp"
 #include "vigia/sim/appearance.hpp"
 
@@ -32,26 +32,28 @@ std::vector<Surface> building_surfaces(const FloorPlan& plan, const Appearance& 
 /// An upright board of its own, for a landmark that hangs on no face.
 Surface board_surface(const Eigen::Isometry3d& wMl, double half_width_m, const Material& material);
 
-/// a·x + b·y + c of the ray (x, y, 1).
+/// a·x + b·y + c·z of the ray (x, y, z).
 struct Linear {
   float a = 0.0F;
   float b = 0.0F;
   float c = 0.0F;
 };
 
-/// A rectangle of rays.
+/// A box of rays.
 struct RayBox {
   float x = 0.0F;  ///< middle
   float y = 0.0F;
+  float z = 1.0F;
   float hx = 0.0F;  ///< half widths
   float hy = 0.0F;
+  float hz = 0.0F;
 };
 
 float minimum(const Linear& f, const RayBox& box);
 float maximum(const Linear& f, const RayBox& box);
 
 /// A box that holds the rays of all pixels with u in [u0, u1] and v in [v0, v1].
-RayBox ray_box(const Intrinsics& intrinsics, int u0, int u1, int v0, int v1);
+RayBox ray_box(const CameraModel& model, int u0, int u1, int v0, int v1);
 
 /// A surface as one exposure sees it. A ray r meets it at depth 1/inverse_depth(r), within the
 /// polygon where no edge is negative, and there s = s(r)/inverse_depth(r), t likewise.
@@ -79,11 +81,14 @@ void visible_in(const std::vector<SurfaceView>& views, const std::vector<ViewId>
                 const RayBox& box, std::vector<ViewId>& visible, bool& pure);
 
 /// Grey of a surface along @p count rays, wherever they meet its plane.
-void shade(const SurfaceView& view, const std::uint32_t* tile, const float* x, const float* y,
-           int count, float* grey);
+void shade(const SurfaceView& view, const std::uint32_t* tile, const Rays& rays, int count,
+           float* grey);
+
+/// @p f along @p count rays.
+void evaluate(const Linear& f, const Rays& rays, int count, float* out);
 
 /// Where the surface is met and is nearer than nearest[i], takes nearest[i] and sets winner[i].
-void take_nearest(const SurfaceView& view, ViewId id, const float* x, const float* y, int count,
-                  float* nearest, ViewId* winner);
+void take_nearest(const SurfaceView& view, ViewId id, const Rays& rays, int count, float* nearest,
+                  ViewId* winner);
 
 }  // namespace vigia::sim

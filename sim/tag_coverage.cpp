@@ -1,5 +1,7 @@
 #include "tag_coverage.hpp"
 
+#include "rays.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -80,12 +82,11 @@ double black_share(const imaging::TagBitmap& black, const Polygon& pixel) {
 
 /// Where the corners above and left of the pixels of row @p v lie, in columns and rows of fields;
 /// not a number where the ray does not meet the plane in front.
-void corner_row(const Eigen::Matrix3d& dHray, const Intrinsics& k, int first_u, int v,
+void corner_row(const Eigen::Matrix3d& dHray, const CameraModel& model, int first_u, int v,
                 std::vector<Eigen::Vector2d>& corners) {
   int u = first_u;
   for (Eigen::Vector2d& corner : corners) {
-    const Eigen::Vector2d ray = unproject(k, {u++ - 0.5, v - 0.5});
-    const Eigen::Vector3d p = dHray * Eigen::Vector3d(ray.x(), ray.y(), 1.0);
+    const Eigen::Vector3d p = dHray * point_ray(model, {u++ - 0.5, v - 0.5});
     corner = p.z() > 0.0 ? Eigen::Vector2d(0.5 * kTagFields * (1.0 + p.x() / p.z()),
                                            0.5 * kTagFields * (1.0 - p.y() / p.z()))
                          : Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
@@ -95,16 +96,16 @@ void corner_row(const Eigen::Matrix3d& dHray, const Intrinsics& k, int first_u, 
 }  // namespace
 
 std::vector<float> tag_coverage(const imaging::TagBitmap& black, const Eigen::Matrix3d& dHray,
-                                const Intrinsics& intrinsics, const imaging::Window& window) {
+                                const CameraModel& model, const imaging::Window& window) {
   const auto width = static_cast<std::size_t>(window.width);
   std::vector<float> coverage(width * static_cast<std::size_t>(window.height));
   std::vector<Eigen::Vector2d> above(width + 1);
   std::vector<Eigen::Vector2d> below(width + 1);
-  corner_row(dHray, intrinsics, window.u, window.v, below);
+  corner_row(dHray, model, window.u, window.v, below);
   float* out = coverage.data();
   for (int v = window.v; v < window.bottom(); ++v) {
     above.swap(below);
-    corner_row(dHray, intrinsics, window.u, v + 1, below);
+    corner_row(dHray, model, window.u, v + 1, below);
     for (std::size_t i = 0; i < width; ++i, ++out) {
       Polygon pixel;
       for (const auto& corner : {above[i], above[i + 1], below[i + 1], below[i]}) pixel.add(corner);

@@ -24,6 +24,26 @@ bool contains(const Window& outer, const Window& inner) {
                            inner.right() <= outer.right() && inner.bottom() <= outer.bottom());
 }
 
+std::size_t pixels_in(const std::vector<Run>& runs) {
+  std::size_t count = 0;
+  for (const Run& run : runs) count += static_cast<std::size_t>(run.width());
+  return count;
+}
+
+void Frame::read_grey_runs(const std::vector<Run>& runs, unsigned char* out) const {
+  for (const Run& run : runs) {
+    read_grey({run.u_begin, run.v, run.width(), 1}, out, run.width());
+    out += run.width();
+  }
+}
+
+void Frame::read_colour_runs(const std::vector<Run>& runs, vpRGBa* out) const {
+  for (const Run& run : runs) {
+    read_colour({run.u_begin, run.v, run.width(), 1}, out, run.width());
+    out += run.width();
+  }
+}
+
 vpImage<unsigned char> grey_image(const Frame& frame) {
   vpImage<unsigned char> image(static_cast<unsigned>(frame.height()),
                                static_cast<unsigned>(frame.width()));

@@ -15,15 +15,25 @@ class TimedFrame : public imaging::Frame {
   int height() const override { return frame_.height(); }
   void read_grey(const imaging::Window& window, unsigned char* out,
                  std::ptrdiff_t stride) const override {
-    const Stopwatch watch;
+    const Stopwatch stopwatch;
     frame_.read_grey(window, out, stride);
-    render_ms_ += watch.elapsed_ms();
+    render_ms_ += stopwatch.elapsed_ms();
   }
   void read_colour(const imaging::Window& window, vpRGBa* out,
                    std::ptrdiff_t stride) const override {
-    const Stopwatch watch;
+    const Stopwatch stopwatch;
     frame_.read_colour(window, out, stride);
-    render_ms_ += watch.elapsed_ms();
+    render_ms_ += stopwatch.elapsed_ms();
+  }
+  void read_grey_runs(const std::vector<imaging::Run>& runs, unsigned char* out) const override {
+    const Stopwatch stopwatch;
+    frame_.read_grey_runs(runs, out);
+    render_ms_ += stopwatch.elapsed_ms();
+  }
+  void read_colour_runs(const std::vector<imaging::Run>& runs, vpRGBa* out) const override {
+    const Stopwatch stopwatch;
+    frame_.read_colour_runs(runs, out);
+    render_ms_ += stopwatch.elapsed_ms();
   }
   double render_ms() const { return render_ms_; }
 

@@ -2,6 +2,7 @@
 
 #include "sim/room.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -75,6 +76,78 @@ TEST(Scene, AColourWindowEqualsTheCropOfTheFullFrame) {
             pixels[static_cast<std::size_t>(row * window.width + column)] ==
             full[static_cast<unsigned>(window.v + row)][static_cast<unsigned>(window.u + column)]);
   }
+}
+
+std::vector<imaging::Run> random_runs(RandomStream& random, int most) {
+  std::vector<imaging::Run> runs;
+  for (int i = 0; i < 400; ++i) {
+    imaging::Run run;
+    run.v = static_cast<int>(random.index(480));
+    run.u_begin = static_cast<int>(random.index(640));
+    run.u_end = std::min(
+        640, run.u_begin + 1 + static_cast<int>(random.index(static_cast<std::size_t>(most))));
+    runs.push_back(run);
+  }
+  return runs;
+}
+
+TEST(Scene, RunsEqualTheCropOfTheFullFrameByteForByte) {
+  const WorldMap world = test_room();
+  auto look = std::make_shared<Appearance>(*appearance_of(world, "clutter_per_m2: 1"));
+  look->stripes.push_back({{1.0, 1.0}, {11.0, 6.0}});
+  const Scene scene(world, look, 3);
+  ImagingParams params;
+  params.colour = true;
+  UnifiedOmni mirror;
+  Eigen::Isometry3d wMm(Eigen::Translation3d(4.0, 3.0, 1.0));
+  wMm.linear() = Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal();
+  RandomStream random(2, "runs");
+  std::vector<std::pair<Eigen::Isometry3d, CameraModel>> shots{{wMm, mirror}};
+  for (const View& view : views()) shots.emplace_back(view.wMc, view.intrinsics);
+  for (const auto& [wMc, model] : shots) {
+    for (const bool blurred : {false, true}) {
+      const Exposure exposure{blurred ? std::vector<Exposure::Instant>{{wMc, {}}, {wMc, {}}}
+                                      : std::vector<Exposure::Instant>{{wMc, {}}},
+                              std::nullopt};
+      const auto runs = random_runs(random, 40);
+      const auto full = scene.expose(exposure, model, {9}, params);
+      const auto grey = imaging::grey_image(*full);
+      const auto colour = imaging::colour_image(*full);
+      std::vector<unsigned char> grey_runs(imaging::pixels_in(runs));
+      std::vector<vpRGBa> colour_runs(grey_runs.size());
+      scene.expose(exposure, model, {9}, params)->read_grey_runs(runs, grey_runs.data());
+      scene.expose(exposure, model, {9}, params)->read_colour_runs(runs, colour_runs.data());
+      std::size_t at = 0;
+      for (const imaging::Run& run : runs) {
+        for (int u = run.u_begin; u < run.u_end; ++u, ++at) {
+          const auto v = static_cast<unsigned>(run.v);
+          ASSERT_EQ(grey_runs[at], grey[v][static_cast<unsigned>(u)]);
+          ASSERT_TRUE(colour_runs[at] == colour[v][static_cast<unsigned>(u)]);
+        }
+      }
+    }
+  }
+}
+
+TEST(Scene, CamerasThatExposeAtOnceHaveNoiseOfTheirOwn) {
+  const WorldMap world = test_room();
+  const Scene scene(world, appearance_of(world, "contrast: 0"), 3);
+  const View view = views()[1];
+  const auto of_camera = [&](CameraId camera) {
+    return imaging::grey_image(*scene.expose(view.wMc, view.intrinsics, {40}, {}, camera));
+  };
+  ImagingParams clean;
+  clean.noise_sigma = 0.0;
+  const auto truth = imaging::grey_image(*scene.expose(view.wMc, view.intrinsics, {40}, clean));
+  auto left = of_camera(0);
+  const auto right = of_camera(1);
+  EXPECT_TRUE(left == imaging::grey_image(*scene.expose(view.wMc, view.intrinsics, {40}, {})));
+  double product = 0.0;
+  const auto n = static_cast<double>(truth.getSize());
+  for (unsigned i = 0; i < truth.getSize(); ++i)
+    product += (left.bitmap[i] - truth.bitmap[i]) * (right.bitmap[i] - truth.bitmap[i]);
+  // σ² = 16 a pixel; the rounding of the common truth adds up to 1/12.
+  EXPECT_LT(std::abs(product / n), 4.5 * 16.2 / std::sqrt(n) + 1.0 / 12.0);
 }
 
 TEST(Scene, TheSameSeedAndStampGiveTheSameBytesAndOthersDoNot) {

@@ -22,6 +22,15 @@ struct Clutter {
   double grey = 60.0;
 };
 
+/// A straight line painted on the floor or the ceiling, from end to end.
+struct Stripe {
+  Eigen::Vector2d from = Eigen::Vector2d::Zero();  ///< m
+  Eigen::Vector2d to = Eigen::Vector2d::Zero();
+  double width_m = 0.05;
+  double grey = 235.0;
+  bool on_ceiling = false;
+};
+
 /// How the sheet round a disc is cut.
 enum class PlateShape { square, disc };
 
@@ -40,6 +49,7 @@ struct Appearance {
   double plate_factor = 1.6;  ///< half the sheet's width over the disc's radius
   PlateShape plate_shape = PlateShape::square;
   double clutter_per_m2 = 0.25;  ///< marks scattered over walls and floor
+  std::vector<Stripe> stripes;
   std::vector<Clutter> clutter;  ///< named in the file and drawn at random
 };
 

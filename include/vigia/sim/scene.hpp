@@ -4,10 +4,11 @@
 #include <memory>
 #include <vector>
 
-#include "vigia/core/camera.hpp"
+#include "vigia/core/camera_model.hpp"
 #include "vigia/core/config.hpp"
 #include "vigia/core/floor_plan.hpp"
 #include "vigia/core/landmark.hpp"
+#include "vigia/core/shot.hpp"
 #include "vigia/core/stamp.hpp"
 #include "vigia/core/world_map.hpp"
 #include "vigia/imaging/frame.hpp"
@@ -27,7 +28,7 @@ struct ImagingParams {
 struct Appearance;
 
 /// The true world as a camera sees it: walls, floor, ceiling and obstacles with texture, discs,
-/// patterns and tags on light sheets, clutter.
+/// patterns and tags on light sheets, lines on floor and ceiling, clutter.
 class Scene {
  public:
   Scene(const WorldMap& world, const std::shared_ptr<const Appearance>& appearance,
@@ -36,17 +37,18 @@ class Scene {
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;
 
-  /// The exposure of a camera at wMc with true intrinsics. The noise of a pixel is a hash of seed,
-  /// stamp, u and v. The frame refers to the scene and must not outlive it.
-  std::unique_ptr<imaging::Frame> expose(const Eigen::Isometry3d& wMc, const Intrinsics& intrinsics,
-                                         Stamp stamp, const ImagingParams& params) const;
+  /// The exposure of a camera at wMc whose true model is @p model. The noise of a pixel is a hash
+  /// of seed, camera, stamp, u and v. The frame refers to the scene and must not outlive it.
+  std::unique_ptr<imaging::Frame> expose(const Eigen::Isometry3d& wMc, const CameraModel& model,
+                                         Stamp stamp, const ImagingParams& params,
+                                         CameraId camera = 0) const;
   /// The same of a camera and people that move while the shutter is open, in uneven light. @p stamp
   /// is the middle of the exposure, which has at least one instant.
-  std::unique_ptr<imaging::Frame> expose(const Exposure& exposure, const Intrinsics& intrinsics,
-                                         Stamp stamp, const ImagingParams& params) const;
+  std::unique_ptr<imaging::Frame> expose(const Exposure& exposure, const CameraModel& model,
+                                         Stamp stamp, const ImagingParams& params,
+                                         CameraId camera = 0) const;
 
  private:
-  friend class SceneFrame;
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

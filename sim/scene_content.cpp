@@ -1,0 +1,140 @@
+#include "scene_content.hpp"
+
+#include "lamp.hpp"
+#include "landmark_decals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "vigia/core/random.hpp"
+
+namespace vigia::sim {
+namespace {
+
+constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
+constexpr double kOnSurface_m = 0.02;  ///< what is nearer to a surface is painted on it
+
+/// The first surface of @p surfaces among the faces that carries a picture of this frame.
+std::size_t face_under(const std::vector<Surface>& surfaces, const Eigen::Isometry3d& wMd,
+                       double tolerance_m) {
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    const Surface& surface = surfaces[i];
+    const Eigen::Vector3d normal = surface.axis_s.cross(surface.axis_t);
+    if (std::abs(normal.dot(wMd.linear().col(2))) < 0.99) continue;
+    const Eigen::Vector3d offset = wMd.translation() - surface.origin_w;
+    if (std::abs(normal.dot(offset)) > tolerance_m) continue;
+    if (surface.corners_w.empty()) return i;
+    const double s = surface.axis_s.dot(offset);
+    const double t = surface.axis_t.dot(offset);
+    double s_end = 0.0;
+    double t_end = 0.0;
+    for (const Eigen::Vector3d& corner : surface.corners_w) {
+      s_end = std::max(s_end, surface.axis_s.dot(corner - surface.origin_w));
+      t_end = std::max(t_end, surface.axis_t.dot(corner - surface.origin_w));
+    }
+    if (s >= 0.0 && s <= s_end && t >= 0.0 && t <= t_end) return i;
+  }
+  return kNowhere;
+}
+
+DecalShape shape_of(ClutterKind kind) {
+  switch (kind) {
+    case ClutterKind::ellipse:
+      return DecalShape::ellipse;
+    case ClutterKind::ring:
+      return DecalShape::ring;
+    case ClutterKind::square:
+      return DecalShape::square;
+    case ClutterKind::half_disc:
+      return DecalShape::half_disc;
+    case ClutterKind::disc:
+      return DecalShape::disc;
+    case ClutterKind::blob:
+      break;
+  }
+  return DecalShape::blob;
+}
+
+/// Frame of what lies on the floor or, its z pointing down, on the ceiling.
+Eigen::Isometry3d level_frame(const Eigen::Vector3d& centre_w, bool on_ceiling) {
+  Eigen::Isometry3d wMd(Eigen::Translation3d{centre_w});
+  if (on_ceiling) wMd.linear() = Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal();
+  return wMd;
+}
+
+Eigen::Isometry3d frame_of(const Clutter& clutter) {
+  const Eigen::Isometry3d wMd = clutter.on_floor ? level_frame(clutter.centre_w, false)
+                                                 : wall_mount(clutter.centre_w, clutter.normal_yaw);
+  return wMd * Eigen::AngleAxisd(clutter.turn, Eigen::Vector3d::UnitZ());
+}
+
+}  // namespace
+
+SceneContent::SceneContent(const WorldMap& world, const Appearance& look, std::uint64_t noise_seed)
+    : seed(noise_seed),
+      light(static_cast<float>(look.light)),
+      tile(derive_seed(look.seed, "noise tile")),
+      surfaces(building_surfaces(world.plan, look)) {
+  for (const Stripe& stripe : look.stripes) paint(stripe, world.plan.ceiling_m());
+  for (const Clutter& clutter : look.clutter) paint(clutter);
+  for (const Landmark& landmark : world.landmarks.all()) hang(landmark, look);
+  if (look.light_kelvin != Appearance{}.light_kelvin) shine(lamp_gains(look.light_kelvin));
+}
+
+void SceneContent::paint(const Stripe& stripe, double ceiling_m) {
+  const Eigen::Vector2d along = stripe.to - stripe.from;
+  const Eigen::Vector2d middle = 0.5 * (stripe.from + stripe.to);
+  StripeMark mark;
+  mark.wMd =
+      level_frame({middle.x(), middle.y(), stripe.on_ceiling ? ceiling_m : 0.0}, stripe.on_ceiling);
+  const double turn = std::atan2(along.y(), along.x());
+  mark.wMd =
+      mark.wMd * Eigen::AngleAxisd(stripe.on_ceiling ? -turn : turn, Eigen::Vector3d::UnitZ());
+  mark.half_length_m = 0.5 * along.norm();
+  mark.half_width_m = 0.5 * stripe.width_m;
+  mark.grey = static_cast<float>(stripe.grey);
+  mark.surface = face_under(surfaces, mark.wMd, kOnSurface_m);
+  if (mark.surface != kNowhere) stripes.push_back(mark);
+}
+
+void SceneContent::paint(const Clutter& clutter) {
+  Decal mark{shape_of(clutter.kind),
+             frame_of(clutter),
+             clutter.size_m,
+             static_cast<float>(clutter.grey),
+             clutter.kind == ClutterKind::disc,
+             0};
+  mark.surface = face_under(surfaces, mark.wMd, kOnSurface_m);
+  if (mark.surface != kNowhere) decals.push_back(mark);
+}
+
+/// A landmark's sheet and picture, on the face under it or on a board of its own.
+void SceneContent::hang(const Landmark& landmark, const Appearance& look) {
+  const double half_width = sheet_half_width(landmark, look);
+  std::size_t under = face_under(surfaces, landmark.wMl, kOnSurface_m);
+  if (under == kNowhere) {
+    under = surfaces.size();
+    surfaces.push_back(board_surface(
+        landmark.wMl, 1.1 * half_width,
+        obstacle_material(look.obstacle_grey, look.contrast, derive_seed(look.seed, under))));
+  }
+  for (Decal& decal : landmark_decals(landmark, look)) {
+    decal.surface = under;
+    decals.push_back(std::move(decal));
+  }
+}
+
+/// Gives everything the lamp's colour.
+void SceneContent::shine(const std::array<float, 3>& gains) {
+  for (Surface& surface : surfaces) surface.material = lit(surface.material, gains);
+  const auto dye = [&gains](auto& painted) {
+    const Ink shone = lit(Ink{painted.grey, painted.tint}, gains);
+    painted.grey = shone.grey;
+    painted.tint = shone.tint;
+  };
+  for (StripeMark& stripe : stripes) dye(stripe);
+  for (Decal& decal : decals) dye(decal);
+}
+
+}  // namespace vigia::sim

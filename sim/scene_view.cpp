@@ -1,0 +1,226 @@
+#include "scene_view.hpp"
+
+#include "simd.hpp"
+
+#include <algorithm>
+
+namespace vigia::sim {
+namespace {
+
+using imaging::Window;
+
+constexpr ViewId kPerson = 0xfffe;   ///< the winner of a pixel that shows somebody
+constexpr ViewId kNothing = 0xffff;  ///< of one that shows nothing
+
+VIGIA_PIXEL_LOOP
+void mix_in(const float* __restrict share, float grey, int count, float* __restrict row) {
+  for (int i = 0; i < count; ++i) row[i] += share[i] * (grey - row[i]);
+}
+
+VIGIA_PIXEL_LOOP
+void keep_where(const ViewId* __restrict winner, ViewId id, int count, float* __restrict share) {
+  for (int i = 0; i < count; ++i) share[i] = winner[i] == id ? share[i] : 0.0F;
+}
+
+VIGIA_PIXEL_LOOP
+void take_where(const ViewId* __restrict winner, ViewId id, const float* __restrict grey, int count,
+                float* __restrict row) {
+  for (int i = 0; i < count; ++i) row[i] = winner[i] == id ? grey[i] : row[i];
+}
+
+}  // namespace
+
+SceneView::SceneView(const SceneContent& content, const Exposure::Instant& instant,
+                     const std::optional<LightNow>& light, const CameraModel& model,
+                     const ImagingParams& params)
+    : content_(content),
+      wMc_(instant.wMc),
+      model_(model),
+      blur_px_(params.blur_px),
+      tiles_(model_, params.blur_px) {
+  const Eigen::Isometry3d cMw = wMc_.inverse(Eigen::Isometry);
+  find_surfaces(cMw);
+  find_marks(cMw);
+  if (light) light_.emplace(*light, cMw);
+  for (const Person& person : instant.people) {
+    for (const BodyPart& part : body_parts(person)) {
+      const BodyPartView view(part, wMc_, model_);
+      if (!view.box().empty()) limbs_.push_back(view);
+    }
+  }
+}
+
+void SceneView::find_surfaces(const Eigen::Isometry3d& cMw) {
+  const RayBox whole = ray_box(model_, 0, image_width(model_) - 1, 0, image_height(model_) - 1);
+  std::vector<SurfaceView> all;
+  std::vector<ViewId> every;
+  for (std::size_t i = 0; i < content_.surfaces.size(); ++i) {
+    SurfaceView view;
+    if (!make_view(content_.surfaces[i], cMw, resolution_px(model_), view)) continue;
+    view.index = i;
+    every.push_back(static_cast<ViewId>(all.size()));
+    all.push_back(view);
+  }
+  std::vector<ViewId> seen;
+  bool pure = false;
+  if (is_perspective(model_))
+    visible_in(all, every, whole, seen, pure);
+  else
+    seen = every;
+  view_of_surface_.assign(content_.surfaces.size(), -1);
+  for (const ViewId id : seen) {
+    view_of_surface_[all[id].index] = static_cast<int>(surfaces_.size());
+    surfaces_.push_back(all[id]);
+  }
+}
+
+void SceneView::find_marks(const Eigen::Isometry3d& cMw) {
+  for (const StripeMark& mark : content_.stripes) {
+    if (view_of_surface_[mark.surface] < 0) continue;
+    const StripeView view(mark, cMw);
+    if (view.faces_camera()) stripes_.push_back(view);
+  }
+  for (const Decal& decal : content_.decals) {
+    if (view_of_surface_[decal.surface] < 0) continue;
+    DecalView view(decal, cMw, model_, blur_px_);
+    if (!view.box().empty()) decals_.push_back(std::move(view));
+  }
+}
+
+void SceneView::see(int u, int v, int count, PixelRow& row) {
+  see_surfaces(u, v, count, row);
+  see_people(u, v, count, row);
+}
+
+void SceneView::see_surfaces(int u, int v, int count, PixelRow& row) {
+  row_rays(model_, u, v, count, row.x.data(), row.y.data(), row.z.data());
+  const auto& tiles = tiles_.row(u, u + count, v / kTile * kTile, surfaces_, stripes_);
+  const int first_tile = u / kTile * kTile;
+  for (std::size_t i = 0; i < tiles.size();) {
+    // Neighbouring tiles that see the same surfaces are one.
+    std::size_t end = i + 1;
+    while (end < tiles.size() && tiles_.same_views(*tiles[i], *tiles[end])) ++end;
+    const int from = std::max(first_tile + static_cast<int>(i) * kTile, u) - u;
+    const int to = std::min(first_tile + static_cast<int>(end) * kTile, u + count) - u;
+    if (tiles[i]->pure)
+      see_one(*tiles_.views_of(*tiles[i]), from, to - from, row);
+    else
+      see_nearest(*tiles[i], from, to - from, row);
+    i = end;
+  }
+}
+
+void SceneView::see_one(ViewId id, int first, int length, PixelRow& row) {
+  const Rays rays = row.rays().from(first);
+  std::fill_n(row.winner.data() + first, length, id);
+  shade(surfaces_[id], content_.tile.data(), rays, length, row.grey.data() + first);
+  if (light_ || !limbs_.empty())
+    evaluate(surfaces_[id].inverse_depth, rays, length, row.depth.data() + first);
+}
+
+void SceneView::see_nearest(const Tile& tile, int first, int length, PixelRow& row) {
+  ViewId* winner = row.winner.data() + first;
+  std::fill_n(winner, length, kNothing);
+  std::fill_n(row.depth.data() + first, length, 0.0F);
+  std::fill_n(row.grey.data() + first, length, 0.0F);
+  const ViewId* views = tiles_.views_of(tile);
+  for (const ViewId* id = views; id != views + tile.view_count; ++id)
+    take_nearest(surfaces_[*id], *id, row.rays().from(first), length, row.depth.data() + first,
+                 winner);
+  for (const ViewId* id = views; id != views + tile.view_count; ++id) {
+    ViewId* begin = std::find(winner, winner + length, *id);
+    if (begin == winner + length) continue;
+    ViewId* end = winner + length;
+    while (*(end - 1) != *id) --end;
+    const auto from = begin - winner + first;
+    const int n = static_cast<int>(end - begin);
+    shade(surfaces_[*id], content_.tile.data(), row.rays().from(from), n, row.other.data() + from);
+    take_where(begin, *id, row.other.data() + from, n, row.grey.data() + from);
+  }
+}
+
+/// Limbs that stand before what is painted already, and hide what hangs on it.
+void SceneView::see_people(int u, int v, int count, PixelRow& row) const {
+  for (const BodyPartView& limb : limbs_) {
+    const Window& box = limb.box();
+    const int from = std::max(u, box.u);
+    const int n = std::min(u + count, box.right()) - from;
+    if (v < box.v || v >= box.bottom() || n <= 0) continue;
+    const auto at = static_cast<std::size_t>(from - u);
+    std::fill_n(row.hit.data() + at, n, static_cast<unsigned char>(0));
+    limb.paint(row.rays().from(from - u), n, row.depth.data() + at, row.grey.data() + at,
+               row.hit.data() + at);
+    for (std::size_t i = at; i < at + static_cast<std::size_t>(n); ++i)
+      if (row.hit[i] != 0) row.winner[i] = kPerson;
+  }
+}
+
+void SceneView::expose(int u, int v, int count, PixelRow& row, int channel, float* levels) {
+  tint(row, count, channel, levels);
+  paint_stripes(u, v, count, row, channel, levels);
+  paint_decals(u, v, count, row, channel, levels);
+  shine(row, count, levels);
+}
+
+void SceneView::tint(const PixelRow& row, int count, int channel, float* levels) const {
+  if (channel == kGrey) {
+    if (levels != row.grey.data()) std::copy_n(row.grey.data(), count, levels);
+    return;
+  }
+  for (int i = 0; i < count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const bool tinted = row.winner[at] < surfaces_.size();
+    levels[i] =
+        row.grey[at] *
+        (tinted ? surfaces_[row.winner[at]].material->tint[static_cast<std::size_t>(channel)]
+                : 1.0F);
+  }
+}
+
+void SceneView::paint_stripes(int u, int v, int count, PixelRow& row, int channel, float* levels) {
+  if (stripes_.empty()) return;
+  int tile_u = u / kTile * kTile;
+  for (const Tile* tile : tiles_.row(u, u + count, v / kTile * kTile, surfaces_, stripes_)) {
+    const int from = std::max(u, tile_u);
+    const int n = std::min(u + count, tile_u + kTile) - from;
+    for (std::size_t i = 0; i < tile->patch_count; ++i) {
+      const StripePatch& patch = tiles_.patches_of(*tile)[i];
+      std::copy_n(patch.share.data() + (v % kTile) * kTile + (from - tile_u), n,
+                  row.other.data() + (from - u));
+      const StripeMark& mark = patch.stripe->mark();
+      mix(mark.surface, mark.tint, mark.grey, channel, from - u, n, row, levels);
+    }
+    tile_u += kTile;
+  }
+}
+
+void SceneView::paint_decals(int u, int v, int count, PixelRow& row, int channel, float* levels) {
+  for (DecalView& view : decals_) {
+    const Window& box = view.box();
+    if (v < box.v || v >= box.bottom()) continue;
+    const int from = std::max(u, box.u);
+    const int n = std::min(u + count, box.right()) - from;
+    if (n <= 0) continue;
+    const int at = from - u;
+    view.coverage(from, v, n, row.rays().from(at), row.other.data() + at);
+    const Decal& decal = view.decal();
+    mix(decal.surface, decal.tint, decal.grey, channel, at, n, row, levels);
+  }
+}
+
+/// Mixes paint of the share row.other[at …] into the levels where its surface is seen.
+void SceneView::mix(std::size_t surface, const std::array<float, 3>& tint, float grey, int channel,
+                    int at, int count, PixelRow& row, float* levels) const {
+  keep_where(row.winner.data() + at, static_cast<ViewId>(view_of_surface_[surface]), count,
+             row.other.data() + at);
+  const float of_channel = channel == kGrey ? 1.0F : tint[static_cast<std::size_t>(channel)];
+  mix_in(row.other.data() + at, grey * of_channel, count, levels + at);
+}
+
+void SceneView::shine(const PixelRow& row, int count, float* levels) const {
+  if (content_.light != 1.0F)
+    for (int i = 0; i < count; ++i) levels[i] *= content_.light;
+  if (light_) light_->apply(row.rays(), row.depth.data(), count, levels);
+}
+
+}  // namespace vigia::sim

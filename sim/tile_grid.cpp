@@ -1,0 +1,101 @@
+#include "tile_grid.hpp"
+
+#include "disc_coverage.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace vigia::sim {
+namespace {
+
+using imaging::Window;
+
+constexpr int kFewTiles = 3;  // so many are found faster without a look at their row
+
+int tiles_in(int pixels) {
+  return (pixels + kTile - 1) / kTile;
+}
+
+}  // namespace
+
+TileGrid::TileGrid(const CameraModel& model, double blur_px)
+    : model_(&model),
+      blur_px_(blur_px),
+      columns_(tiles_in(image_width(model))),
+      tiles_(static_cast<std::size_t>(columns_) *
+             static_cast<std::size_t>(tiles_in(image_height(model)))) {}
+
+const std::vector<const Tile*>& TileGrid::row(int u, int u_end, int tile_v,
+                                              const std::vector<SurfaceView>& views,
+                                              const std::vector<StripeView>& stripes) {
+  const int first = u / kTile;
+  const int last = (u_end - 1) / kTile;
+  if (every_.size() != views.size()) {
+    every_.resize(views.size());
+    std::iota(every_.begin(), every_.end(), ViewId{0});
+  }
+  const std::vector<ViewId>* among = nullptr;
+  row_.clear();
+  for (int column = first; column <= last; ++column) {
+    const int index = tile_v / kTile * columns_ + column;
+    Tile& tile = tiles_[static_cast<std::size_t>(index)];
+    if (!tile.known) {
+      if (among == nullptr) {
+        among = &every_;
+        if (is_perspective(*model_) && last - first >= kFewTiles) {
+          bool pure = false;
+          visible_in(
+              views, every_,
+              ray_box(*model_, first * kTile, (last + 1) * kTile, tile_v, tile_v + kTile - 1),
+              near_row_, pure);
+          among = &near_row_;
+        }
+      }
+      compute(tile, column * kTile, tile_v, *among, views, stripes);
+    }
+    row_.push_back(&tile);
+  }
+  return row_;
+}
+
+void TileGrid::compute(Tile& tile, int u, int v, const std::vector<ViewId>& among,
+                       const std::vector<SurfaceView>& views,
+                       const std::vector<StripeView>& stripes) {
+  visible_in(views, among, ray_box(*model_, u, u + kTile - 1, v, v + kTile - 1), visible_,
+             tile.pure);
+  tile.first_view = view_pool_.size();
+  tile.view_count = visible_.size();
+  view_pool_.insert(view_pool_.end(), visible_.begin(), visible_.end());
+  if (!stripes.empty()) paint_stripes(tile, u, v, stripes);
+  tile.known = true;
+}
+
+void TileGrid::paint_stripes(Tile& tile, int u, int v, const std::vector<StripeView>& stripes) {
+  const int margin = blur_px_ > 0.0 ? blur_margin(blur_px_) : 0;
+  const Window window{u - margin, v - margin, kTile + 2 * margin, kTile + 2 * margin};
+  // The rays of the window's outermost corners, too.
+  const RayBox box = ray_box(*model_, window.u - 1, window.right(), window.v - 1, window.bottom());
+  std::vector<Eigen::Vector3d> corners;
+  tile.first_patch = patch_pool_.size();
+  for (const StripeView& stripe : stripes) {
+    if (!stripe.touches(box)) continue;
+    if (corners.empty()) corners = corner_rays(*model_, window);
+    std::vector<float> share = stripe.coverage(corners, window);
+    if (std::all_of(share.begin(), share.end(), [](float s) { return s == 0.0F; })) continue;
+    blur(share, window, blur_px_);
+    StripePatch patch{&stripe, {}};
+    for (int row = margin; row < margin + kTile; ++row) {
+      const auto begin = share.begin() + row * window.width + margin;
+      patch.share.insert(patch.share.end(), begin, begin + kTile);
+    }
+    patch_pool_.push_back(std::move(patch));
+  }
+  tile.patch_count = patch_pool_.size() - tile.first_patch;
+}
+
+bool TileGrid::same_views(const Tile& a, const Tile& b) const {
+  return a.pure == b.pure && a.view_count == b.view_count &&
+         std::equal(views_of(a), views_of(a) + a.view_count, views_of(b));
+}
+
+}  // namespace vigia::sim
