@@ -25,12 +25,15 @@ BaseRates BaseMotion::expect(const BaseRates& odometry, const BaseRates& command
   const BaseLimits& limits = params_.limits;
   offset_.v += params_.adaptation * (odometry.v - mean_.v);
   offset_.w += params_.adaptation * (odometry.w - mean_.w);
+  offset_.vy += params_.adaptation * (odometry.vy - mean_.vy);
   const Foreseen forward = ramp(end_.v, std::clamp(command.v, -limits.speed, limits.speed),
                                 limits.acceleration, params_.tick_s);
   const Foreseen turn = ramp(end_.w, std::clamp(command.w, -limits.turn_rate, limits.turn_rate),
                              limits.turn_acceleration, params_.tick_s);
-  end_ = {forward.end, turn.end};
-  mean_ = {forward.mean + offset_.v, turn.mean + offset_.w};
+  const Foreseen side = ramp(end_.vy, std::clamp(command.vy, -limits.side_speed, limits.side_speed),
+                             limits.side_acceleration, params_.tick_s);
+  end_ = {forward.end, turn.end, side.end};
+  mean_ = {forward.mean + offset_.v, turn.mean + offset_.w, side.mean + offset_.vy};
   return mean_;
 }
 

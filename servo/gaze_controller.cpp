@@ -11,7 +11,7 @@ namespace {
 
 /// A point of the base frame, seen from where the base will be after @p seconds at constant rates.
 Eigen::Vector3d after_motion(const Eigen::Vector3d& p_r, const BaseRates& base, double seconds) {
-  const auto arc = arc_increment(base.v, base.w, Stamp{}, Stamp::from_seconds(seconds));
+  const auto arc = arc_increment(base, Stamp{}, Stamp::from_seconds(seconds));
   return to_isometry(move(Pose2{}, arc)).inverse() * p_r;
 }
 
@@ -295,7 +295,8 @@ GazeOutput GazeController::track(const GazeInput& input, const Landmark& landmar
       servo_.rates(input.intrinsics, input.sighting->uv, p_c.z(), input.head.angles, input.base);
   const double approach = (camera_jacobian_base(geometry_, input.head.angles).row(2) *
                            Eigen::Vector2d(input.base.v, input.base.w))
-                              .value();
+                              .value() +
+                          camera_twist_sideways(rMc)(2) * input.base.vy;
   output.command.zoom_mm_s =
       std::clamp(zoom_control_.rate(zoom_, input.head.zoom_mm, input.sighting->radius_px,
                                     held_radius(input.sighting->radius_px, input.intrinsics),

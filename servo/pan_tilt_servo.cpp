@@ -62,9 +62,10 @@ HeadAngles PanTiltServo::compensation(const Eigen::Vector3d& p_c, const HeadAngl
   // Held over a tick, the rate must be the mean of the interval: to second order that of its
   // middle.
   const double half = 0.5 * params_.hold_s;
-  const Eigen::Matrix<double, 6, 1> twist =
+  Eigen::Matrix<double, 6, 1> twist =
       camera_jacobian_base(geometry_, head) * Eigen::Vector2d(base.v, base.w) +
       camera_jacobian_head(geometry_, head) * Eigen::Vector2d(now.pan, now.tilt);
+  if (base.vy != 0.0) twist += base.vy * camera_twist_sideways(camera_in_base(geometry_, head));
   const Eigen::Vector3d velocity = twist.head<3>();
   const Eigen::Vector3d omega = twist.tail<3>();
   const Eigen::Vector3d p_c_middle = p_c - half * (velocity + omega.cross(p_c));
@@ -78,8 +79,9 @@ HeadAngles PanTiltServo::compensation_now(const Eigen::Vector3d& p_c, const Head
   // q̇ = −(L·J_head)⁺ L·J_base (v, ω)ᵀ
   const Eigen::Matrix<double, 2, 6> L = interaction(p_c);
   const Eigen::Matrix2d task = L * camera_jacobian_head(geometry_, head);
-  const Eigen::Vector2d drift =
+  Eigen::Vector2d drift =
       L * camera_jacobian_base(geometry_, head) * Eigen::Vector2d(base.v, base.w);
+  if (base.vy != 0.0) drift += base.vy * L * camera_twist_sideways(camera_in_base(geometry_, head));
   const Eigen::Vector2d q_dot = -task.completeOrthogonalDecomposition().solve(drift);
   return {q_dot.x(), q_dot.y()};
 }

@@ -18,6 +18,7 @@ double focal_slope(const ZoomCalibration& calibration, double zoom_mm) {
 
 double ZoomControl::rate(const ZoomCalibration& calibration, double zoom_mm, double radius_px,
                          double wanted_px, double depth_rate) {
+  if (calibration.samples().size() == 1) return 0.0;
   const double zoom = std::clamp(zoom_mm, calibration.min_zoom_mm(), calibration.max_zoom_mm());
   const double error = std::log(wanted_px / radius_px);
   // Once moving, the zoom goes on well into the band, so that it does not start at every tick.

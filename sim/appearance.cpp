@@ -29,24 +29,47 @@ bool lies_on_a_face(const Clutter& mark, const FloorPlan& plan) {
   });
 }
 
-void describe_mark(ParamVisitor& v, const WorldMap& world, Clutter& mark) {
-  v.choice("kind", mark.kind, kKinds, About("what it looks like").required());
-  v.vector("centre_m", mark.centre_w, {-1e4, 1e4}, About("on a face or on the floor").required());
-  v.boolean("on_floor", mark.on_floor, "lies on the floor");
-  v.where(!mark.on_floor, "`on_floor: false`", [&] {
+void describe_place(ParamVisitor& v, Clutter& mark) {
+  bool on_floor = mark.place == ClutterPlace::floor;
+  bool on_ceiling = mark.place == ClutterPlace::ceiling;
+  v.boolean("on_floor", on_floor, "lies on the floor");
+  v.boolean("on_ceiling", on_ceiling, "hangs on the ceiling");
+  v.require(!on_floor || !on_ceiling, "on_ceiling",
+            "clutter is on the floor or on the ceiling, not on both");
+  if (on_floor) mark.place = ClutterPlace::floor;
+  if (on_ceiling) mark.place = ClutterPlace::ceiling;
+  v.where(mark.place == ClutterPlace::face, "neither `on_floor` nor `on_ceiling` is set", [&] {
     v.angle("normal_deg", mark.normal_yaw, {-360.0, 360.0},
             About("the normal of its face, from the world's x axis").required());
   });
+}
+
+void require_place(ParamVisitor& v, const WorldMap& world, const Clutter& mark) {
+  switch (mark.place) {
+    case ClutterPlace::floor:
+      v.require(std::abs(mark.centre_w.z()) <= 0.02, "centre_m",
+                "clutter on the floor must have height 0");
+      return;
+    case ClutterPlace::ceiling:
+      v.require(std::abs(mark.centre_w.z() - world.plan.ceiling_m()) <= 0.02, "centre_m",
+                "clutter on the ceiling must have the room's height");
+      return;
+    case ClutterPlace::face:
+      v.require(lies_on_a_face(mark, world.plan), "centre_m",
+                "clutter must lie on a face (within 2 cm) whose normal is normal_deg");
+  }
+}
+
+void describe_mark(ParamVisitor& v, const WorldMap& world, Clutter& mark) {
+  v.choice("kind", mark.kind, kKinds, About("what it looks like").required());
+  v.vector("centre_m", mark.centre_w, {-1e4, 1e4},
+           About("on a face, on the floor or on the ceiling").required());
+  describe_place(v, mark);
   v.number("size_m", mark.size_m, {0.005, 2.0}, "half its greatest width");
   v.angle("turn_deg", mark.turn, {-360.0, 360.0}, "about the normal");
   v.number("grey", mark.grey, kGrey, About("of its surface").in("grey levels"));
   if (v.reader() == nullptr) return;
-  if (mark.on_floor)
-    v.require(std::abs(mark.centre_w.z()) <= 0.02, "centre_m",
-              "clutter on the floor must have height 0");
-  else
-    v.require(lies_on_a_face(mark, world.plan), "centre_m",
-              "clutter must lie on a face (within 2 cm) whose normal is normal_deg");
+  require_place(v, world, mark);
 }
 
 void describe_surfaces(ParamVisitor& v, Appearance& a) {
@@ -64,6 +87,16 @@ void describe_surfaces(ParamVisitor& v, Appearance& a) {
            "half the sheet's width over the disc's radius");
   v.choice("plate_shape", a.plate_shape, {"square", "disc"}, "how the sheet round a disc is cut");
   v.number("clutter_per_m2", a.clutter_per_m2, {0.0, 20.0}, "marks scattered at random");
+}
+
+void describe_stripe(ParamVisitor& v, Stripe& stripe) {
+  v.vector("from_m", stripe.from, {-1e4, 1e4}, About("one end").required());
+  v.vector("to_m", stripe.to, {-1e4, 1e4}, About("the other end").required());
+  v.number("width_m", stripe.width_m, {0.001, 10.0}, "of the line");
+  v.number("grey", stripe.grey, kGrey, About("of the paint").in("grey levels"));
+  v.boolean("on_ceiling", stripe.on_ceiling, "on the ceiling instead of the floor");
+  v.require(v.reader() == nullptr || (stripe.to - stripe.from).norm() >= 1e-3, "to_m",
+            "the stripe has no length: it ends where it begins");
 }
 
 bool near_landmark(const Eigen::Vector3d& p, const WorldMap& world, double plate_factor) {
@@ -110,7 +143,7 @@ void scatter(const WorldMap& world, Appearance& appearance) {
   const auto spots = std::llround(per_m2 * size.x() * size.y());
   for (long long i = 0; i < spots; ++i) {
     Clutter mark = random_mark(random);
-    mark.on_floor = true;
+    mark.place = ClutterPlace::floor;
     mark.centre_w << low.x() + size.x() * random.uniform(0.0, 1.0),
         low.y() + size.y() * random.uniform(0.0, 1.0), 0.0;
     appearance.clutter.push_back(mark);
@@ -122,6 +155,8 @@ void scatter(const WorldMap& world, Appearance& appearance) {
 void describe_appearance(ParamVisitor& v, const WorldMap& world, Appearance& appearance) {
   v.map("appearance", "looks of the building; grey levels are before the light's gain",
         [&] { describe_surfaces(v, appearance); });
+  v.each("stripes", "straight lines painted on the floor or the ceiling",
+         [&] { describe_stripe(v, appearance.stripes.emplace_back()); });
   v.each("clutter", "dark marks that are no landmarks",
          [&] { describe_mark(v, world, appearance.clutter.emplace_back()); });
   if (v.reader() != nullptr) scatter(world, appearance);

@@ -16,9 +16,31 @@ Eigen::Vector3d draw3(RandomStream& random, double sigma) {
   return {x, y, z};
 }
 
+/// Camera 0 draws from the mission's own streams.
+std::uint64_t seed_of(std::uint64_t mission_seed, CameraId camera) {
+  if (camera == 0) return mission_seed;
+  return derive_seed(derive_seed(mission_seed, "camera"), static_cast<std::uint64_t>(camera));
+}
+
+struct TrueMount {
+  const Eigen::Vector3d& camera_offset_h;
+  const std::optional<Eigen::Isometry3d>& askew;
+
+  CameraMount operator()(HeadGeometry head) const {
+    head.camera_offset_h += camera_offset_h;
+    return head;
+  }
+  CameraMount operator()(FixedMount fixed) const {
+    if (askew) fixed.rMc = *askew * fixed.rMc;
+    return fixed;
+  }
+};
+
 }  // namespace
 
-CameraErrors::CameraErrors(const DisturbanceParams& disturbances, std::uint64_t seed) {
+CameraErrors::CameraErrors(const DisturbanceParams& disturbances, std::uint64_t mission_seed,
+                           CameraId camera) {
+  const std::uint64_t seed = seed_of(mission_seed, camera);
   if (disturbances.zoom_calibration) {
     // The mean square over u of a + b cos πu + c cos 2πu is a² + (b² + c²)/2; each third is σ²/3.
     RandomStream random(seed, "zoom calibration");
@@ -37,6 +59,8 @@ CameraErrors::CameraErrors(const DisturbanceParams& disturbances, std::uint64_t 
     askew_ = true;
     turn_ = draw3(random, disturbances.mounting->angle);
     offset_ = draw3(random, disturbances.mounting->offset_m);
+    RandomStream optical_centre(seed, "camera offset");
+    camera_offset_h_ = draw3(optical_centre, disturbances.mounting->camera_offset_m);
   }
 }
 
@@ -49,6 +73,26 @@ Intrinsics CameraErrors::true_intrinsics(const Intrinsics& calibrated, double u)
   truth.u0 += off.x();
   truth.v0 += off.y();
   return truth;
+}
+
+CameraModel CameraErrors::true_model(const CameraModel& calibrated) const {
+  constexpr double kMiddle = 0.5;
+  if (const auto* pinhole = std::get_if<Intrinsics>(&calibrated))
+    return true_intrinsics(*pinhole, kMiddle);
+  UnifiedOmni omni = std::get<UnifiedOmni>(calibrated);
+  const Intrinsics plane =
+      true_intrinsics({omni.width, omni.height, omni.px, omni.py, omni.u0, omni.v0, 0.0}, kMiddle);
+  omni.px = plane.px;
+  omni.py = plane.py;
+  omni.u0 = plane.u0;
+  omni.v0 = plane.v0;
+  return omni;
+}
+
+CameraMount CameraErrors::true_mount(const CameraMount& known) const {
+  const auto* fixed = std::get_if<FixedMount>(&known);
+  const auto askew = fixed != nullptr ? mounting(fixed->rMc.translation()) : std::nullopt;
+  return std::visit(TrueMount{camera_offset_h_, askew}, known);
 }
 
 std::optional<Eigen::Isometry3d> CameraErrors::mounting(const Eigen::Vector3d& mount_r) const {

@@ -29,6 +29,8 @@ void describe(ParamVisitor& v, LightParams& p) {
 void describe(ParamVisitor& v, MountingParams& p) {
   v.angle("angle_deg", p.angle, {0.0, 10.0}, "σ of the head's yaw, pitch and roll on the base");
   v.number("offset_m", p.offset_m, {0.0, 0.5}, "σ of its place, each coordinate");
+  v.number("camera_offset_m", p.camera_offset_m, {0.0, 0.5},
+           "σ of the optical centre's place in the head, each coordinate");
 }
 
 void describe(ParamVisitor& v, ZoomCalibrationParams& p) {

@@ -36,21 +36,21 @@ LightField::LightField(const LightParams& params, const FloorPlan& plan, std::ui
     full_.lamps[i] = {{low.x() + x * size.x(), low.y() + y * size.y(), plan.ceiling_m()},
                       random.uniform(0.6, 1.4)};
   }
-  double least = std::numeric_limits<double>::infinity();
-  double most = 0.0;
+  double dimmest = std::numeric_limits<double>::infinity();
+  double brightest = 0.0;
   constexpr int kGrid = 24;
   for (int i = 0; i <= kGrid; ++i) {
     for (int j = 0; j <= kGrid; ++j) {
       for (const double height : {0.0, 0.5, 1.0}) {
         const double gain = full_.gain({low.x() + size.x() * i / kGrid,
                                         low.y() + size.y() * j / kGrid, height * plan.ceiling_m()});
-        least = std::min(least, gain);
-        most = std::max(most, gain);
+        dimmest = std::min(dimmest, gain);
+        brightest = std::max(brightest, gain);
       }
     }
   }
-  const double scale = 2.0 * params_.room / (most - least);
-  full_.ambient = 1.0 - 0.5 * scale * (least + most);
+  const double scale = 2.0 * params_.room / (brightest - dimmest);
+  full_.ambient = 1.0 - 0.5 * scale * (dimmest + brightest);
   for (auto& lamp : full_.lamps) lamp.strength *= scale;
 
   for (double& phase : phases_) phase = random.uniform(-kPi, kPi);

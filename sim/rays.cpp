@@ -18,6 +18,28 @@ void bend(float x0, float dx, float y, float kdu, int u, int count, float* __res
   }
 }
 
+struct OmniRow {
+  float x0, dx, y, xi, min_z;
+};
+
+/// Mei & Rives eq. 4.
+VIGIA_PIXEL_LOOP
+void lift_to_sphere(const OmniRow& row, int u, int count, float* __restrict out_x,
+                    float* __restrict out_y, float* __restrict out_z) {
+  const OmniRow k = row;
+  for (int i = 0; i < count; ++i) {
+    const float x = k.x0 + static_cast<float>(u + i) * k.dx;
+    const float r2 = x * x + k.y * k.y;
+    const float root2 = 1.0F + (1.0F - k.xi * k.xi) * r2;
+    const float root = std::sqrt(root2 > 0.0F ? root2 : 0.0F);
+    const float eta = (k.xi + root) / (1.0F + r2);
+    const bool seen = (root2 >= 0.0F) & (eta - k.xi >= k.min_z);
+    out_x[i] = seen ? eta * x : 0.0F;
+    out_y[i] = seen ? eta * k.y : 0.0F;
+    out_z[i] = seen ? eta - k.xi : 0.0F;
+  }
+}
+
 struct RowRays {
   int u, v, count;
   float *x, *y, *z;
@@ -27,13 +49,10 @@ struct RowRays {
          static_cast<float>((v - k.v0) / k.py), static_cast<float>(k.kdu), u, count, x, y);
   }
   void operator()(const UnifiedOmni& k) const {
-    const CameraModel model = k;
-    for (int i = 0; i < count; ++i) {
-      const auto seen = ray(model, {u + i, v});
-      x[i] = seen ? static_cast<float>(seen->x()) : 0.0F;
-      y[i] = seen ? static_cast<float>(seen->y()) : 0.0F;
-      z[i] = seen ? static_cast<float>(seen->z()) : 0.0F;
-    }
+    lift_to_sphere({static_cast<float>(-k.u0 / k.px), static_cast<float>(1.0 / k.px),
+                    static_cast<float>((v - k.v0) / k.py), static_cast<float>(k.xi),
+                    static_cast<float>(min_z(k))},
+                   u, count, x, y, z);
   }
 };
 

@@ -35,12 +35,15 @@ void drag(double& encoder, double axis, double play) {
   encoder = std::clamp(encoder, axis - 0.5 * play, axis + 0.5 * play);
 }
 
-Pose2 along_arc(const Pose2& pose, double distance, double turn) {
-  const double half = 0.5 * turn;
+Pose2 along_arc(const Pose2& pose, const ArcMotion& motion) {
+  const double half = 0.5 * motion.turn;
   const double sinc = std::abs(half) < 1e-6 ? 1.0 - half * half / 6.0 : std::sin(half) / half;
-  const double chord = distance * sinc;
-  return {pose.x + chord * std::cos(pose.theta + half),
-          pose.y + chord * std::sin(pose.theta + half), wrap_angle(pose.theta + turn)};
+  const double c = std::cos(pose.theta + half);
+  const double s = std::sin(pose.theta + half);
+  const double ahead = motion.distance * sinc;
+  const double aside = motion.side * sinc;
+  return {pose.x + ahead * c - aside * s, pose.y + ahead * s + aside * c,
+          wrap_angle(pose.theta + motion.turn)};
 }
 
 double clamp_rate(double rate, double limit) {
@@ -53,6 +56,7 @@ Robot::Robot(const RobotParams& params, const Pose2& start, double zoom_mm, std:
              const Ground& ground)
     : params_(params),
       ground_(ground),
+      camera_(params.head),
       zoom_min_mm_(-std::numeric_limits<double>::infinity()),
       zoom_max_mm_(std::numeric_limits<double>::infinity()),
       odometry_pose_(start),
@@ -78,7 +82,8 @@ void Robot::set_zoom_range(double min_mm, double max_mm) {
 void Robot::command(const BaseRates& base, const HeadRates& head) {
   const BaseLimits& limits = params_.base;
   const HeadLimits& head_limits = params_.head_limits;
-  base_command_ = {clamp_rate(base.v, limits.speed), clamp_rate(base.w, limits.turn_rate)};
+  base_command_ = {clamp_rate(base.v, limits.speed), clamp_rate(base.w, limits.turn_rate),
+                   clamp_rate(base.vy, limits.side_speed)};
   head_command_.angles = {clamp_rate(head.angles.pan, head_limits.rate),
                           clamp_rate(head.angles.tilt, head_limits.rate)};
   head_command_.zoom_mm_s = clamp_rate(head.zoom_mm_s, head_limits.zoom_rate_mm_s);
@@ -88,6 +93,7 @@ void Robot::advance(Duration dt) {
   double left = dt.seconds();
   while (left > 0.0) {
     const bool steady = truth_.base.v == base_command_.v && truth_.base.w == base_command_.w &&
+                        truth_.base.vy == base_command_.vy &&
                         truth_.head_rates.pan == head_command_.angles.pan &&
                         truth_.head_rates.tilt == head_command_.angles.tilt;
     const double h = steady ? left : std::min(left, kStepWhileAccelerating);
@@ -103,11 +109,12 @@ void Robot::step(double h) {
 
   const AxisStep drive = ramp(truth_.base.v, base_command_.v, base.acceleration, h);
   const AxisStep turn = ramp(truth_.base.w, base_command_.w, base.turn_acceleration, h);
-  truth_.base = {drive.rate, turn.rate};
-  const ArcMotion wheels{drive.distance, turn.distance};
+  const AxisStep side = ramp(truth_.base.vy, base_command_.vy, base.side_acceleration, h);
+  truth_.base = {drive.rate, turn.rate, side.rate};
+  const ArcMotion wheels{drive.distance, turn.distance, side.distance};
   const ArcMotion ground = slip_ ? slip_->over_ground(wheels) : wheels;
-  truth_.pose = along_arc(truth_.pose, ground.distance, ground.turn);
-  wheel_pose_ = along_arc(wheel_pose_, wheels.distance, wheels.turn);
+  truth_.pose = along_arc(truth_.pose, ground);
+  wheel_pose_ = along_arc(wheel_pose_, wheels);
   turned_ += wheels.turn;
 
   const HeadAngles& rates = truth_.head_rates;
@@ -129,8 +136,9 @@ void Robot::begin_look() {
 }
 
 OdometryIncrement Robot::read_odometry() {
+  const auto increment = params_.base.omnidirectional() ? crab_increment : chord_increment;
   OdometryIncrement u =
-      chord_increment(odometry_pose_, wheel_pose_, turned_, odometry_stamp_, truth_.stamp);
+      increment(odometry_pose_, wheel_pose_, turned_, odometry_stamp_, truth_.stamp);
   const Eigen::Matrix3d covariance = control_covariance(u, params_.odometry);
   u.rot1 += std::sqrt(covariance(0, 0)) * odometry_random_.normal();
   u.trans += std::sqrt(covariance(1, 1)) * odometry_random_.normal();
@@ -161,19 +169,29 @@ void Robot::kidnap(const Pose2& pose) {
 }
 
 Eigen::Isometry3d Robot::camera_pose() const {
-  return camera_at(truth_.pose, truth_.head);
+  return camera_pose(camera_);
+}
+
+Eigen::Isometry3d Robot::camera_pose(const CameraMount& mount) const {
+  return camera_at(mount, truth_.pose, truth_.head);
 }
 
 Eigen::Isometry3d Robot::camera_pose_after(double s) const {
+  return camera_pose_after(camera_, s);
+}
+
+Eigen::Isometry3d Robot::camera_pose_after(const CameraMount& mount, double s) const {
   return camera_at(
-      along_arc(truth_.pose, truth_.base.v * s, truth_.base.w * s),
+      mount, along_arc(truth_.pose, {truth_.base.v * s, truth_.base.w * s, truth_.base.vy * s}),
       {truth_.head.pan + truth_.head_rates.pan * s, truth_.head.tilt + truth_.head_rates.tilt * s});
 }
 
-Eigen::Isometry3d Robot::camera_at(const Pose2& pose, const HeadAngles& head) const {
-  const Eigen::Isometry3d rMc = camera_in_base(params_.head, head);
+Eigen::Isometry3d Robot::camera_at(const CameraMount& mount, const Pose2& pose,
+                                   const HeadAngles& head) const {
+  const Eigen::Isometry3d rMc = mounted_camera(mount, head);
   const Eigen::Isometry3d wMr = ground_.place(pose);
-  return mounting_ ? wMr * *mounting_ * rMc : wMr * rMc;
+  const bool on_head = std::holds_alternative<HeadGeometry>(mount);
+  return on_head && mounting_ ? wMr * *mounting_ * rMc : wMr * rMc;
 }
 
 }  // namespace vigia::sim

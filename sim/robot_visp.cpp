@@ -10,17 +10,21 @@
 namespace vigia::sim {
 namespace {
 
-/// Columns (v, ω, pan, tilt) of the camera's twist in its own frame.
-Eigen::Matrix<double, 6, 4> camera_jacobian(const HeadGeometry& geometry, const HeadAngles& head) {
-  Eigen::Matrix<double, 6, 4> jacobian;
-  jacobian << camera_jacobian_base(geometry, head), camera_jacobian_head(geometry, head);
-  return jacobian;
+using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
+Eigen::Matrix<double, 6, 2> head_columns(const HeadGeometry& mount, const HeadAngles& head) {
+  return camera_jacobian_head(mount, head);
 }
 
-void to_visp(const Eigen::Matrix<double, 6, 4>& from, vpMatrix& to) {
-  to.resize(6, 4);
+Eigen::Matrix<double, 6, 2> head_columns(const FixedMount& /*mount*/, const HeadAngles& /*head*/) {
+  return Eigen::Matrix<double, 6, 2>::Zero();
+}
+
+void to_visp(const Jacobian& from, vpMatrix& to) {
+  const auto columns = static_cast<unsigned>(from.cols());
+  to.resize(6, columns);
   for (unsigned row = 0; row < 6; ++row)
-    for (unsigned column = 0; column < 4; ++column) to[row][column] = from(row, column);
+    for (unsigned column = 0; column < columns; ++column) to[row][column] = from(row, column);
 }
 
 void require_length(const vpColVector& q, unsigned length, const char* what) {
@@ -37,8 +41,21 @@ void require_length(const vpColVector& q, unsigned length, const char* what) {
 
 }  // namespace
 
+/// The camera's twist in its own frame by every axis.
+Eigen::Matrix<double, 6, Eigen::Dynamic> Robot::camera_jacobian() const {
+  const Eigen::Isometry3d rMc = mounted_camera(camera_, truth_.head);
+  const Eigen::Matrix<double, 6, 2> head =
+      std::visit([this](const auto& mount) { return head_columns(mount, truth_.head); }, camera_);
+  Jacobian jacobian(6, nDof);
+  if (params_.base.omnidirectional())
+    jacobian << camera_jacobian_base(rMc), camera_twist_sideways(rMc), head;
+  else
+    jacobian << camera_jacobian_base(rMc), head;
+  return jacobian;
+}
+
 void Robot::init() {
-  nDof = 4;
+  nDof = params_.base.omnidirectional() ? 5 : 4;
   eJeAvailable = true;
   fJeAvailable = true;
   areJointLimitsAvailable = false;
@@ -48,12 +65,12 @@ void Robot::init() {
 }
 
 void Robot::get_eJe(vpMatrix& jacobian) {
-  to_visp(camera_jacobian(params_.head, truth_.head), jacobian);
+  to_visp(camera_jacobian(), jacobian);
 }
 
 void Robot::get_fJe(vpMatrix& jacobian) {
   const Eigen::Matrix3d wRc = camera_pose().linear();
-  Eigen::Matrix<double, 6, 4> twists = camera_jacobian(params_.head, truth_.head);
+  Jacobian twists = camera_jacobian();
   twists.topRows<3>() = wRc * twists.topRows<3>();
   twists.bottomRows<3>() = wRc * twists.bottomRows<3>();
   to_visp(twists, jacobian);
@@ -111,19 +128,21 @@ void Robot::setVelocity(const vpRobot::vpControlFrameType frame, const vpColVect
   if (getRobotState() != STATE_VELOCITY_CONTROL)
     throw vpRobotException(vpRobotException::wrongStateError,
                            "setVelocity needs the state STATE_VELOCITY_CONTROL");
-  Eigen::Vector4d rates;
+  const auto axes = static_cast<unsigned>(nDof);
+  Eigen::VectorXd rates(axes);
   if (frame == ARTICULAR_FRAME) {
-    require_length(velocity, 4, "an articular velocity");
-    rates << velocity[0], velocity[1], velocity[2], velocity[3];
+    require_length(velocity, axes, "an articular velocity");
+    rates = Eigen::Map<const Eigen::VectorXd>(velocity.data, axes);
   } else if (frame == CAMERA_FRAME || frame == END_EFFECTOR_FRAME) {
     require_length(velocity, 6, "a velocity twist");
     const Eigen::Map<const Eigen::Matrix<double, 6, 1>> twist(velocity.data);
-    rates =
-        camera_jacobian(params_.head, truth_.head).completeOrthogonalDecomposition().solve(twist);
+    rates = camera_jacobian().completeOrthogonalDecomposition().solve(twist);
   } else {
     no_such_frame("setVelocity");
   }
-  command({rates[0], rates[1]}, {{rates[2], rates[3]}, head_command_.zoom_mm_s});
+  const double side = axes == 5 ? rates[2] : 0.0;
+  command({rates[0], rates[1], side},
+          {{rates[axes - 2], rates[axes - 1]}, head_command_.zoom_mm_s});
 }
 
 vpRobot::vpRobotStateType Robot::setRobotState(const vpRobot::vpRobotStateType state) {

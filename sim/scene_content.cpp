@@ -64,8 +64,10 @@ Eigen::Isometry3d level_frame(const Eigen::Vector3d& centre_w, bool on_ceiling) 
 }
 
 Eigen::Isometry3d frame_of(const Clutter& clutter) {
-  const Eigen::Isometry3d wMd = clutter.on_floor ? level_frame(clutter.centre_w, false)
-                                                 : wall_mount(clutter.centre_w, clutter.normal_yaw);
+  const Eigen::Isometry3d wMd =
+      clutter.place == ClutterPlace::face
+          ? wall_mount(clutter.centre_w, clutter.normal_yaw)
+          : level_frame(clutter.centre_w, clutter.place == ClutterPlace::ceiling);
   return wMd * Eigen::AngleAxisd(clutter.turn, Eigen::Vector3d::UnitZ());
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+#include <string>
 
 #include "vigia/core/plane_geometry.hpp"
 
@@ -23,21 +25,42 @@ std::shared_ptr<const Appearance> appearance_of(const std::shared_ptr<const Appe
       true_appearance(given ? *given : Appearance{}, world, disturbances, seed));
 }
 
-/// How far the picture moves between two poses of the camera, px: the most of its middle and its
+/// How far the picture moves between two poses of the camera, px: the largest of its middle and its
 /// corners, of points at kNear_m and of points far away.
 double motion_px(const Eigen::Isometry3d& aMb, const Intrinsics& k) {
-  double most = 0.0;
+  double largest = 0.0;
   for (const double u : {0.0, 0.5, 1.0}) {
     for (const double v : {0.0, 0.5, 1.0}) {
       const Eigen::Vector3d ray((u * k.width - k.u0) / k.px, (v * k.height - k.v0) / k.py, 1.0);
       for (const double near : {1.0, 0.0}) {
         const Eigen::Vector3d p = aMb.linear() * ray + near / kNear_m * aMb.translation();
         if (p.z() <= 0.1) return std::numeric_limits<double>::infinity();
-        most = std::max(most, k.px * (p.head<2>() / p.z() - ray.head<2>()).norm());
+        largest = std::max(largest, k.px * (p.head<2>() / p.z() - ray.head<2>()).norm());
       }
     }
   }
-  return most;
+  return largest;
+}
+
+/// The same, of directions all round that the mirror shows from both poses.
+double motion_px(const Eigen::Isometry3d& aMb, const UnifiedOmni& omni) {
+  const CameraModel model = omni;
+  double largest = 0.0;
+  for (const double off_axis : {0.3, 0.6, 0.9}) {
+    for (int i = 0; i < 8; ++i) {
+      const double angle = off_axis * omni.max_angle;
+      const double azimuth = 0.25 * kPi * i;
+      const Eigen::Vector3d ray(std::sin(angle) * std::cos(azimuth),
+                                std::sin(angle) * std::sin(azimuth), std::cos(angle));
+      const auto from = project(model, ray);
+      for (const double near : {1.0, 0.0}) {
+        const auto to = project(
+            model, Eigen::Vector3d(aMb.linear() * ray + near / kNear_m * aMb.translation()));
+        if (from && to) largest = std::max(largest, (*to - *from).norm());
+      }
+    }
+  }
+  return largest;
 }
 
 }  // namespace
@@ -50,10 +73,20 @@ Simulator::Simulator(const RobotSetup& setup, const WorldMap& world,
       robot_(setup.robot, start, setup.initial_zoom_mm, derive_seed(seed, "robot"), world.ground),
       scene_(world_, appearance_of(appearance, world, disturbances, seed),
              derive_seed(seed, "scene")),
-      camera_errors_(disturbances, seed),
       motion_blur_(disturbances.motion_blur) {
-  robot_.set_zoom_range(setup_.zoom.min_zoom_mm(), setup_.zoom.max_zoom_mm());
-  if (const auto rMr = camera_errors_.mounting(setup_.robot.head.mount_r))
+  if (setup_.directed_camera() != nullptr)
+    robot_.set_zoom_range(setup_.zoom().min_zoom_mm(), setup_.zoom().max_zoom_mm());
+  robot_.set_camera(setup_.cameras.front().camera.mount);
+  for (const CameraSetup& camera : setup_.cameras) {
+    const CameraErrors errors(disturbances, seed, camera.camera.id);
+    cameras_.push_back({camera, errors, errors.true_mount(camera.camera.mount)});
+  }
+  disturb(disturbances, seed);
+  if (setup_.range_ring) ring_.emplace(*setup_.range_ring, seed);
+}
+
+void Simulator::disturb(const DisturbanceParams& disturbances, std::uint64_t seed) {
+  if (const auto rMr = CameraErrors(disturbances, seed).mounting(setup_.robot.head.mount_r))
     robot_.set_mounting_error(*rMr);
   if (disturbances.backlash) robot_.set_backlash(disturbances.backlash->width);
   if (disturbances.wheel_slip) robot_.set_wheel_slip(WheelSlip(*disturbances.wheel_slip, seed));
@@ -64,7 +97,6 @@ Simulator::Simulator(const RobotSetup& setup, const WorldMap& world,
     latency_ = Duration::from_seconds(disturbances.latency->latency_s);
     processing_ = Duration::from_seconds(disturbances.latency->processing_s);
   }
-  if (setup_.range_ring) ring_.emplace(*setup_.range_ring, seed);
 }
 
 void Simulator::advance(Duration dt) {
@@ -83,48 +115,65 @@ bool Simulator::kidnap() {
 
 Bystander Simulator::bystander() const {
   const RobotTruth& truth = robot_.truth();
-  return {truth.pose.position(), truth.base.v * unit_vector(truth.pose.theta),
+  const Eigen::Vector2d ahead = unit_vector(truth.pose.theta);
+  return {truth.pose.position(),
+          truth.base.v * ahead + truth.base.vy * Eigen::Vector2d(-ahead.y(), ahead.x()),
           setup_.robot.radius_m};
 }
 
-Intrinsics Simulator::true_intrinsics() const {
+const Simulator::TrueCamera& Simulator::camera_of(CameraId id) const {
+  const auto found = std::find_if(cameras_.begin(), cameras_.end(), [id](const TrueCamera& camera) {
+    return camera.setup.camera.id == id;
+  });
+  if (found == cameras_.end())
+    throw std::out_of_range("the robot has no camera " + std::to_string(id));
+  return *found;
+}
+
+CameraModel Simulator::true_model(CameraId camera) const {
+  const TrueCamera& truth = camera_of(camera);
+  if (const auto* fixed = std::get_if<CameraModel>(&truth.setup.camera.optics))
+    return truth.errors.true_model(*fixed);
+  const auto& zoom = std::get<ZoomCalibration>(truth.setup.camera.optics);
   const double zoom_mm = robot_.truth().zoom_mm;
-  const double u = (zoom_mm - setup_.zoom.min_zoom_mm()) /
-                   (setup_.zoom.max_zoom_mm() - setup_.zoom.min_zoom_mm());
-  Intrinsics intrinsics = camera_errors_.true_intrinsics(setup_.zoom.at(zoom_mm), u);
+  const double u = (zoom_mm - zoom.min_zoom_mm()) / (zoom.max_zoom_mm() - zoom.min_zoom_mm());
+  Intrinsics intrinsics = truth.errors.true_intrinsics(zoom.at(zoom_mm), u);
   const double scale = std::exp(robot_.truth().look_log_focal_error);
   intrinsics.px *= scale;
   intrinsics.py *= scale;
   return intrinsics;
 }
 
-std::vector<Exposure::Instant> Simulator::instants(const Intrinsics& intrinsics) const {
+std::vector<Exposure::Instant> Simulator::instants(const TrueCamera& camera,
+                                                   const CameraModel& model) const {
   const std::vector<Person> people = walkers_ ? walkers_->people() : std::vector<Person>{};
   int count = 1;
   if (motion_blur_) {
     const double half = 0.5 * motion_blur_->exposure_s;
-    const double moved = motion_px(
-        robot_.camera_pose_after(half).inverse(Eigen::Isometry) * robot_.camera_pose_after(-half),
-        intrinsics);
-    if (moved > kStill_px)
+    const Eigen::Isometry3d moved =
+        robot_.camera_pose_after(camera.mount, half).inverse(Eigen::Isometry) *
+        robot_.camera_pose_after(camera.mount, -half);
+    const double moved_px = std::visit([&](const auto& m) { return motion_px(moved, m); }, model);
+    if (moved_px > kStill_px)
       count =
-          static_cast<int>(std::min<double>(motion_blur_->max_instants, 1.0 + std::ceil(moved)));
+          static_cast<int>(std::min<double>(motion_blur_->max_instants, 1.0 + std::ceil(moved_px)));
   }
-  if (count == 1) return {{robot_.camera_pose(), people}};
+  if (count == 1) return {{robot_.camera_pose(camera.mount), people}};
   std::vector<Exposure::Instant> instants;
   for (int i = 0; i < count; ++i) {
     const double s = motion_blur_->exposure_s * ((i + 0.5) / count - 0.5);
-    instants.push_back({robot_.camera_pose_after(s), people});
+    instants.push_back({robot_.camera_pose_after(camera.mount, s), people});
     for (Person& person : instants.back().people) person.position += person.velocity * s;
   }
   return instants;
 }
 
-std::unique_ptr<imaging::Frame> Simulator::expose() const {
-  const Intrinsics intrinsics = true_intrinsics();
-  Exposure exposure{instants(intrinsics), std::nullopt};
+std::unique_ptr<imaging::Frame> Simulator::expose(CameraId camera) const {
+  const TrueCamera& truth = camera_of(camera);
+  const CameraModel model = true_model(camera);
+  Exposure exposure{instants(truth, model), std::nullopt};
   if (light_) exposure.light = light_->at(robot_.truth().stamp);
-  return scene_.expose(exposure, intrinsics, robot_.truth().stamp, setup_.imaging);
+  return scene_.expose(exposure, model, robot_.truth().stamp, truth.setup.imaging, camera);
 }
 
 RangeScan Simulator::scan() {

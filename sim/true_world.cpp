@@ -31,9 +31,9 @@ void remove(const MissingLandmarksParams& params, std::uint64_t seed,
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < landmarks.size(); ++i)
     if (random.uniform(0.0, 1.0) < params.probability) missing.push_back(i);
-  const std::size_t most = landmarks.size() / static_cast<std::size_t>(params.at_most_one_in);
+  const std::size_t limit = landmarks.size() / static_cast<std::size_t>(params.at_most_one_in);
   std::shuffle(missing.begin(), missing.end(), random.engine());
-  if (missing.size() > most) missing.resize(most);
+  if (missing.size() > limit) missing.resize(limit);
   std::sort(missing.rbegin(), missing.rend());
   for (const std::size_t i : missing)
     landmarks.erase(landmarks.begin() + static_cast<std::ptrdiff_t>(i));

@@ -16,7 +16,7 @@ constexpr int kWalkAttempts = 200;
 constexpr double kForesight_s = 1.0;
 constexpr std::array<double, 5> kInstants_s{0.1, 0.25, 0.5, 0.75, kForesight_s};
 constexpr double kWalkFromWall = 0.05;   // m, beyond the radius
-constexpr double kLeast = 0.1;           // m, from the robot's hull when there is no other way
+constexpr double kMinDistance = 0.1;     // m, from the robot's hull when there is no other way
 constexpr double kTouching = 0.02;       // m, from the robot's hull: nobody steps nearer
 constexpr double kFromEachOther = 0.15;  // m, between hulls
 constexpr double kAtGoal = 0.15;         // m
@@ -109,19 +109,19 @@ Vector2d Walkers::escape(const Walker& walker, const Bystander& robot) const {
   constexpr double kTooNear = 20.0;  // m of way that a metre too near is worth
   constexpr double kResolve = 2.0;   // s/m: keeps on the way that he has taken
   const auto worth = [&](const Vector2d& velocity) {
-    const double room = room_on(walker, velocity, robot, kLeast);
+    const double room = room_on(walker, velocity, robot, kMinDistance);
     const Vector2d apart =
         walker.position - robot.position + (velocity - robot.velocity) * kForesight_s;
     return apart.norm() + kTooNear * std::min(room, 0.0) + kResolve * velocity.dot(walker.velocity);
   };
   Vector2d best = Vector2d::Zero();
-  double most = worth(best);
+  double highest = worth(best);
   for (int i = 0; i < kDirections; ++i) {
     const Vector2d velocity = params_.speed_mps * unit_vector(2.0 * kPi * i / kDirections);
     const double value = worth(velocity);
-    if (value <= most) continue;
+    if (value <= highest) continue;
     best = velocity;
-    most = value;
+    highest = value;
   }
   return best;
 }

@@ -25,10 +25,12 @@ void WheelSlip::begin_slip() {
 }
 
 ArcMotion WheelSlip::over_ground(const ArcMotion& wheels) {
-  ArcMotion ground{wheels.distance * (1.0 + diameter_), wheels.turn * (1.0 + base_)};
-  const double driven = std::abs(wheels.distance);
+  ArcMotion ground{wheels.distance * (1.0 + diameter_), wheels.turn * (1.0 + base_),
+                   wheels.side * (1.0 + diameter_)};
+  const double driven = std::hypot(wheels.distance, wheels.side);
   if (slipping()) {
     ground.distance *= 1.0 - loss_;
+    ground.side *= 1.0 - loss_;
     ground.turn += skew_per_m_ * driven;
     slip_left_m_ -= driven;
   } else {

@@ -7,20 +7,12 @@
 #include <nlohmann/json.hpp>
 
 #include "vigia/core/error.hpp"
-#include "vigia/localization/landmark_information.hpp"
+#include "vigia/mission/planning_parts.hpp"
 #include "vigia/planner/look_policy.hpp"
 #include "vigia/report/plan_picture.hpp"
 
 namespace vigia::app {
 namespace {
-
-localization::LandmarkInformationParams information_params(const mission::MissionSetup& setup) {
-  localization::LandmarkInformationParams params;
-  params.sensor = setup.noise.sensor;
-  params.radius_px = setup.look.radius_px;
-  params.fill = setup.look.fill;
-  return params;
-}
 
 /// What a policy is asked with, at a control position.
 class PolicyAtPositions {
@@ -30,7 +22,7 @@ class PolicyAtPositions {
       : setup_(setup),
         visibility_(visibility),
         head_(head),
-        information_(head.geometry, head.zoom, information_params(setup), head.ground),
+        information_(mission::landmark_information(setup)),
         policy_(planner::make_look_policy(
             policy,
             {setup.look.fixed_landmark, RandomStream(setup.seed, "look policy"),
@@ -97,12 +89,11 @@ PlanRow row_of(std::size_t index, const planner::AreaPlan& area) {
 PlanTable make_plan(const mission::MissionSetup& setup, const std::string& policy) {
   if (policy == "fixed" && !setup.look.fixed_landmark)
     throw InputError("--policy fixed: the mission needs the key planner.fixed_landmark");
-  const auto& robot = setup.robot.robot;
-  const planner::Visibility visibility(setup.world.plan, robot.head, robot.head_limits,
-                                       setup.look.visibility, setup.world.ground);
-  const planner::HeadModel head{robot.head,           robot.head_limits,  setup.robot.zoom,
-                                setup.look.radius_px, setup.look.dwell_s, setup.look.fill,
-                                setup.world.ground};
+  if (setup.robot.directed_camera() == nullptr)
+    throw InputError("a perception plan is for a camera that the head turns, and the robot '" +
+                     setup.robot.name + "' has none");
+  const planner::Visibility visibility = mission::visibility(setup);
+  const planner::HeadModel head = mission::head_model(setup);
   planner::FuzzySupervisors supervisors(setup.look.rules);
   const auto plan = planner::plan_perception(setup.path, setup.world.landmarks, visibility, head,
                                              supervisors, setup.look.perception);

@@ -104,8 +104,8 @@ std::vector<std::pair<std::string, double>> noise_of(const mission::MissionSetup
           {"odometry_trans_per_sqrt_m", robot.odometry.trans_per_sqrt_m},
           {"odometry_rot_per_sqrt_m_deg", to_deg(robot.odometry.rot_per_sqrt_m)},
           {"odometry_rot_per_sqrt_rad_deg", to_deg(robot.odometry.rot_per_sqrt_rad)},
-          {"pixel_noise", setup.robot.imaging.noise_sigma},
-          {"blur_px", setup.robot.imaging.blur_px},
+          {"pixel_noise", setup.robot.cameras.front().imaging.noise_sigma},
+          {"blur_px", setup.robot.cameras.front().imaging.blur_px},
           {"start_m", setup.start_sigma_m},
           {"start_deg", to_deg(setup.start_sigma_rad)}};
 }

@@ -66,8 +66,7 @@ bool in_image(const Intrinsics& intrinsics, const Eigen::Vector2d& uv, double ma
 ZoomCalibration::ZoomCalibration(int width, int height, double u0, double v0,
                                  std::vector<ZoomSample> samples)
     : samples_(std::move(samples)) {
-  if (samples_.size() < 2)
-    throw std::invalid_argument("a zoom calibration needs at least two samples");
+  if (samples_.empty()) throw std::invalid_argument("a zoom calibration needs a sample");
   for (std::size_t i = 1; i < samples_.size(); ++i) {
     if (samples_[i].zoom_mm <= samples_[i - 1].zoom_mm || samples_[i].px <= samples_[i - 1].px)
       throw std::invalid_argument("zoom and focal length must increase from sample to sample");
@@ -79,19 +78,25 @@ ZoomCalibration::ZoomCalibration(int width, int height, double u0, double v0,
 }
 
 Intrinsics ZoomCalibration::at(double zoom_mm) const {
+  Intrinsics result = base_;
+  if (samples_.size() == 1) {
+    result.px = result.py = samples_.front().px;
+    result.kdu = samples_.front().kdu;
+    return result;
+  }
   const double zoom = std::clamp(zoom_mm, min_zoom_mm(), max_zoom_mm());
   const auto upper = std::find_if(samples_.begin() + 1, samples_.end() - 1,
                                   [zoom](const ZoomSample& s) { return s.zoom_mm >= zoom; });
   const ZoomSample& high = *upper;
   const ZoomSample& low = *(upper - 1);
   const double t = (zoom - low.zoom_mm) / (high.zoom_mm - low.zoom_mm);
-  Intrinsics result = base_;
   result.px = result.py = low.px + t * (high.px - low.px);
   result.kdu = low.kdu + t * (high.kdu - low.kdu);
   return result;
 }
 
 double ZoomCalibration::zoom_for_focal(double px) const {
+  if (samples_.size() == 1) return samples_.front().zoom_mm;
   const double focal = std::clamp(px, samples_.front().px, samples_.back().px);
   const auto upper = std::find_if(samples_.begin() + 1, samples_.end() - 1,
                                   [focal](const ZoomSample& s) { return s.px >= focal; });

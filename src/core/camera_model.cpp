@@ -16,14 +16,6 @@ Eigen::Matrix3d normalise_jacobian(const Eigen::Vector3d& v) {
   return (Eigen::Matrix3d::Identity() - unit * unit.transpose()) / norm;
 }
 
-/// Smallest Z_s of the directions that the mirror shows. Z_s + ξ vanishes, or the image folds over
-/// at Z_s = −1/ξ, where every ray from the second centre touches the sphere.
-double min_z(const UnifiedOmni& omni) {
-  constexpr double kMargin = 1e-9;
-  const double fold = omni.xi > 1.0 ? -1.0 / omni.xi : -omni.xi;
-  return std::max(std::cos(omni.max_angle), fold + kMargin);
-}
-
 std::optional<Eigen::Vector3d> ray_of(const Intrinsics& pinhole, const Eigen::Vector2d& uv) {
   return unproject(pinhole, uv).homogeneous().normalized();
 }
@@ -87,6 +79,14 @@ Matrix32 direction_jacobian(const UnifiedOmni& omni, const Eigen::Vector2d& uv) 
 }
 
 }  // namespace
+
+double min_z(const UnifiedOmni& omni) {
+  // Z_s + ξ vanishes, or the image folds over at Z_s = −1/ξ, where the rays from the second centre
+  // touch the sphere.
+  constexpr double kMargin = 1e-9;
+  const double fold = omni.xi > 1.0 ? -1.0 / omni.xi : -omni.xi;
+  return std::max(std::cos(omni.max_angle), fold + kMargin);
+}
 
 int image_width(const CameraModel& model) {
   return std::visit([](const auto& m) { return m.width; }, model);

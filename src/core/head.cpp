@@ -54,9 +54,18 @@ Eigen::Matrix<double, 6, 2> camera_jacobian_head(const HeadGeometry& geometry,
   return jacobian;
 }
 
+Eigen::Matrix<double, 6, 1> camera_twist_sideways(const Eigen::Isometry3d& rMc) {
+  Eigen::Matrix<double, 6, 1> twist;
+  twist << rMc.linear().transpose() * Eigen::Vector3d::UnitY(), Eigen::Vector3d::Zero();
+  return twist;
+}
+
 Eigen::Matrix<double, 6, 2> camera_jacobian_base(const HeadGeometry& geometry,
                                                  const HeadAngles& angles) {
-  const Eigen::Isometry3d rMc = camera_in_base(geometry, angles);
+  return camera_jacobian_base(camera_in_base(geometry, angles));
+}
+
+Eigen::Matrix<double, 6, 2> camera_jacobian_base(const Eigen::Isometry3d& rMc) {
   Eigen::Matrix<double, 6, 2> jacobian;
   jacobian.col(0) << rMc.linear().transpose() * Eigen::Vector3d::UnitX(), Eigen::Vector3d::Zero();
   jacobian.col(1) = twist_about(rMc, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ());

@@ -6,7 +6,7 @@ namespace vigia {
 
 Eigen::Matrix3d control_covariance(const OdometryIncrement& u, const OdometryNoise& noise) {
   const double distance = std::abs(u.trans);
-  const double turned = std::abs(u.rot1) + std::abs(u.rot2);
+  const double turned = std::abs(u.rot1 - u.crab) + std::abs(u.rot2 + u.crab);
   const double rotation = noise.rot_per_sqrt_m * noise.rot_per_sqrt_m * distance +
                           noise.rot_per_sqrt_rad * noise.rot_per_sqrt_rad * turned;
   const double translation = noise.trans_per_sqrt_m * noise.trans_per_sqrt_m * distance;
@@ -51,11 +51,38 @@ OdometryIncrement chord_increment(const Pose2& before, const Pose2& after, doubl
   return u;
 }
 
+OdometryIncrement crab_increment(const Pose2& before, const Pose2& after, double turned, Stamp from,
+                                 Stamp to) {
+  const Pose2 moved = compose(inverse(before), after);
+  OdometryIncrement u{from, to, 0.5 * turned, 0.0, 0.5 * turned};
+  const double chord = std::hypot(moved.x, moved.y);
+  if (chord <= 1e-9) return u;  // the chord's direction is rounding error
+  u.trans = chord;
+  u.crab = wrap_angle(std::atan2(moved.y, moved.x) - 0.5 * turned);
+  u.rot1 += u.crab;
+  u.rot2 -= u.crab;
+  return u;
+}
+
 OdometryIncrement arc_increment(double v, double w, Stamp from, Stamp to) {
   const double dt = (to - from).seconds();
   const double half = 0.5 * w * dt;
   const double sinc = std::abs(half) < 1e-6 ? 1.0 - half * half / 6.0 : std::sin(half) / half;
   return {from, to, half, v * dt * sinc, half};
+}
+
+OdometryIncrement arc_increment(const BaseRates& rates, Stamp from, Stamp to) {
+  if (rates.vy == 0.0) return arc_increment(rates.v, rates.w, from, to);
+  OdometryIncrement u = arc_increment(std::hypot(rates.v, rates.vy), rates.w, from, to);
+  u.crab = std::atan2(rates.vy, rates.v);
+  u.rot1 += u.crab;
+  u.rot2 -= u.crab;
+  return u;
+}
+
+BaseRates mean_rates(const OdometryIncrement& u) {
+  const double dt = (u.to - u.from).seconds();
+  return {u.trans * std::cos(u.crab) / dt, (u.rot1 + u.rot2) / dt, u.trans * std::sin(u.crab) / dt};
 }
 
 }  // namespace vigia

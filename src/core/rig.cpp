@@ -16,6 +16,16 @@ Eigen::Isometry3d placed(const FixedMount& mount, const HeadAngles& /*head*/) {
   return mount.rMc;
 }
 
+std::optional<ZoomCalibration> calibration_of(const ZoomCalibration& zoom) {
+  return zoom;
+}
+
+std::optional<ZoomCalibration> calibration_of(const CameraModel& model) {
+  const auto* k = std::get_if<Intrinsics>(&model);
+  if (k == nullptr) return std::nullopt;
+  return ZoomCalibration(k->width, k->height, k->u0, k->v0, {{0.0, k->px, k->kdu}});
+}
+
 CameraModel focused(const ZoomCalibration& optics, double zoom_mm) {
   return optics.at(zoom_mm);
 }
@@ -26,12 +36,31 @@ CameraModel focused(const CameraModel& optics, double /*zoom_mm*/) {
 
 }  // namespace
 
-Eigen::Isometry3d Camera::rMc(const HeadAngles& head) const {
+Eigen::Isometry3d mounted_camera(const CameraMount& mount, const HeadAngles& head) {
   return std::visit([&](const auto& on) { return placed(on, head); }, mount);
+}
+
+Eigen::Isometry3d Camera::rMc(const HeadAngles& head) const {
+  return mounted_camera(mount, head);
 }
 
 CameraModel Camera::model(double zoom_mm) const {
   return std::visit([&](const auto& by) { return focused(by, zoom_mm); }, optics);
+}
+
+std::optional<ZoomCalibration> zoom_calibration(const Optics& optics) {
+  return std::visit([](const auto& by) { return calibration_of(by); }, optics);
+}
+
+bool on_head(const Camera& camera) {
+  return std::holds_alternative<HeadGeometry>(camera.mount);
+}
+
+const Camera* directed_camera(const Rig& rig) {
+  const auto found = std::find_if(rig.cameras.begin(), rig.cameras.end(), [](const Camera& camera) {
+    return on_head(camera) && zoom_calibration(camera.optics).has_value();
+  });
+  return found == rig.cameras.end() ? nullptr : &*found;
 }
 
 const Camera* Rig::find(CameraId id) const {

@@ -89,6 +89,44 @@ std::optional<LandmarkId> named_landmark(const Observation& observation) {
       observation);
 }
 
+/// How far the middle of the landmark's image lies from the image of its centre, px, seen from wMc:
+/// the perspective of a disc or a square, degrees from half a metre away. Nothing without an image.
+std::optional<Eigen::Vector2d> centre_shift(const Observation& observation,
+                                            const Landmark& landmark,
+                                            const Eigen::Isometry3d& wMc) {
+  const Shot& shot = shot_of(observation);
+  const Eigen::Isometry3d cMl = wMc.inverse() * landmark.wMl;
+  const auto centre = project(shot.model, cMl.translation());
+  if (!centre) return std::nullopt;
+  return std::visit(
+      Overloaded{[&](const EllipseObservation&) -> std::optional<Eigen::Vector2d> {
+                   const auto image = disc_image(landmark, pinhole(shot), wMc);
+                   if (!image) return std::nullopt;
+                   return Eigen::Vector2d(Eigen::Vector2d(image->u, image->v) - *centre);
+                 },
+                 [&](const PointsObservation& seen) -> std::optional<Eigen::Vector2d> {
+                   PointsObservation predicted = seen;
+                   predicted.points.clear();
+                   for (const SeenPoint& point : seen_points(landmark, seen)) {
+                     const auto image = predict_point(point.point, pinhole(shot), cMl);
+                     if (!image) return std::nullopt;
+                     predicted.points.push_back(
+                         {point.point.label, image->uv, Eigen::Matrix2d::Identity()});
+                   }
+                   return Eigen::Vector2d(image_extent(predicted).centre - *centre);
+                 }},
+      observation);
+}
+
+/// The horizontal direction of a pixel in the robot's frame at the exposure, rad.
+std::optional<double> bearing_of(const Shot& shot, const Eigen::Vector2d& uv,
+                                 const RigOnGround& on_ground) {
+  const auto ray_c = ray(shot.model, uv);
+  if (!ray_c) return std::nullopt;
+  const Eigen::Vector3d ray_r = on_ground.rig.at(shot.camera).rMc(shot.head).linear() * *ray_c;
+  return std::atan2(ray_r.y(), ray_r.x());
+}
+
 bool same_pose(const Pose2& a, const Pose2& b) {
   const Eigen::Vector3d apart = difference(a, b);
   return apart.head<2>().norm() < 0.2 && std::abs(apart.z()) < from_deg(3.0);
@@ -202,16 +240,15 @@ void BearingOnlyLocalizer::predict(const OdometryIncrement& increment) {
 std::optional<BearingOnlyLocalizer::Sightline> BearingOnlyLocalizer::sightline(
     const Observation& observation) const {
   const Shot& shot = shot_of(observation);
-  const auto ray_c = ray(shot.model, image_extent(observation).centre);
-  if (!ray_c) return std::nullopt;
+  const auto bearing = bearing_of(shot, image_extent(observation).centre, model_.on_ground());
+  if (!bearing) return std::nullopt;
   const Eigen::Isometry3d rMc = model_.on_ground().rig.at(shot.camera).rMc(shot.head);
-  const Eigen::Vector3d ray_r = rMc.linear() * *ray_c;
   Sightline seen;
   seen.look = shot.look;
   seen.landmark = named_landmark(observation);
   seen.eye_r = rMc.translation().head<2>();
   seen.height_m = rMc.translation().z();
-  seen.bearing = std::atan2(ray_r.y(), ray_r.x());
+  seen.bearing = *bearing;
   const double reading = params_.sensor.reading_angle;
   seen.variance = params_.bearing_floor * params_.bearing_floor + reading * reading;
   for (const OdometryIncrement& u : history_) {
@@ -281,10 +318,23 @@ BearingOnlyLocalizer::Residual BearingOnlyLocalizer::residual(const Sightline& s
 UpdateResult BearingOnlyLocalizer::fuse(const Observation& observation, const Sightline& seen) {
   const Shot& shot = shot_of(observation);
   if (shot.look != look_ && model_.has_look_biases(shot.camera)) begin_look(shot.look);
-  const Association found = model_.associate(observation, look_state(shot));
+  const LookState state = look_state(shot);
+  const Association found = model_.associate(observation, state);
   if (!found.match) return found.result;
   const Landmark& landmark = *model_.map().find(*found.result.landmark);
-  const Residual about = residual(seen, landmark);
+  const RigOnGround& on_ground = model_.on_ground();
+  const HeadAngles head{shot.head.pan + mean_(3), shot.head.tilt};
+  const auto shift =
+      centre_shift(observation, landmark, on_ground.wMc(shot.camera, head, state.pose()));
+  if (!shift) return {UpdateStatus::degenerate, landmark.id, 0.0, 0};
+  // The direction of the landmark's centre, not of its image's.
+  const Eigen::Vector2d middle = image_extent(observation).centre;
+  const auto centre_bearing = bearing_of(shot, middle - *shift, on_ground);
+  const auto middle_bearing = bearing_of(shot, middle, on_ground);
+  if (!centre_bearing || !middle_bearing) return {UpdateStatus::degenerate, landmark.id, 0.0, 0};
+  Sightline of_centre = seen;
+  of_centre.bearing += wrap_angle(*centre_bearing - *middle_bearing);
+  const Residual about = residual(of_centre, landmark);
   const Eigen::Vector4d PHt = covariance_ * about.H.transpose();
   const double S = about.H * PHt + about.variance;
   const double nis = about.d * about.d / S;

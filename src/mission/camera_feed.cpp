@@ -21,7 +21,7 @@ bool CameraFeed::due(Stamp now) {
 }
 
 void CameraFeed::expose(const sim::Simulator& simulator, const Shot& shot) {
-  if (due(shot.stamp)) late_.expose({simulator.expose(), shot, simulator.robot().truth()});
+  if (due(shot.stamp)) late_.expose({simulator.expose(camera_), shot, simulator.robot().truth()});
 }
 
 }  // namespace vigia::mission

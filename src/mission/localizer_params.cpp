@@ -11,14 +11,6 @@ localization::PatternFixParams pattern_fix_params(const MissionSetup& setup) {
   return params;
 }
 
-localization::LandmarkInformation landmark_information(const MissionSetup& setup) {
-  localization::LandmarkInformationParams params;
-  params.sensor = setup.noise.sensor;
-  params.radius_px = setup.look.radius_px;
-  params.fill = setup.look.fill;
-  return {setup.robot.robot.head, setup.robot.zoom, params, setup.world.ground};
-}
-
 localization::RelocalizerParams relocalizer_params(const MissionSetup& setup) {
   localization::RelocalizerParams params;
   params.sensor = setup.noise.sensor;

@@ -1,10 +1,5 @@
 #pragma once
 
-#include <memory>
-#include <string>
-
-#include "vigia/localization/landmark_information.hpp"
-#include "vigia/localization/localizer.hpp"
 #include "vigia/localization/pattern_fix.hpp"
 #include "vigia/localization/relocalizer.hpp"
 #include "vigia/mission/setup.hpp"
@@ -15,6 +10,5 @@ namespace vigia::mission {
 
 localization::PatternFixParams pattern_fix_params(const MissionSetup& setup);
 localization::RelocalizerParams relocalizer_params(const MissionSetup& setup);
-localization::LandmarkInformation landmark_information(const MissionSetup& setup);
 
 }  // namespace vigia::mission

@@ -16,7 +16,7 @@ constexpr double kFromStop = from_deg(3);  // an encoder that is a little off ma
 
 void LookAround::begin(const HeadReading& head) {
   const auto& limits = setup_.robot.robot.head_limits;
-  const Intrinsics wide = setup_.robot.zoom.at(setup_.robot.zoom.min_zoom_mm());
+  const Intrinsics wide = setup_.robot.zoom().at(setup_.robot.zoom().min_zoom_mm());
   const double field = 2.0 * std::atan(0.5 * wide.width / wide.px);
   const double step = setup_.recovery.step_fraction * field;
   const double first = limits.pan_min + kFromStop;
@@ -39,7 +39,7 @@ HeadRates LookAround::step(const HeadReading& head) const {
   const servo::SlewLaw law{limits.rate, limits.acceleration, setup_.gaze.aim_gain, setup_.tick_s};
   rates.angles.pan = law.rate_for(aim.pan - head.angles.pan);
   rates.angles.tilt = law.rate_for(aim.tilt - head.angles.tilt);
-  const double zoom_error = setup_.robot.zoom.min_zoom_mm() - head.zoom_mm;
+  const double zoom_error = setup_.robot.zoom().min_zoom_mm() - head.zoom_mm;
   rates.zoom_mm_s =
       std::clamp(zoom_error / setup_.tick_s, -limits.zoom_rate_mm_s, limits.zoom_rate_mm_s);
   return rates;
@@ -50,7 +50,7 @@ bool LookAround::ready(Stamp now, const HeadReading& head, Stamp exposed) {
   const bool there = std::abs(aim.pan - head.angles.pan) < kAtStop &&
                      std::abs(aim.tilt - head.angles.tilt) < kAtStop &&
                      std::abs(head.rates.pan) < kAtRest && std::abs(head.rates.tilt) < kAtRest &&
-                     head.zoom_mm - setup_.robot.zoom.min_zoom_mm() < 0.01;
+                     head.zoom_mm - setup_.robot.zoom().min_zoom_mm() < 0.01;
   if (!there) {
     settled_since_.reset();
     return false;

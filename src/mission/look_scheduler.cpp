@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "vigia/mission/planning_parts.hpp"
 #include "vigia/planner/apparent_size.hpp"
 
 namespace vigia::mission {
@@ -15,12 +16,8 @@ LookScheduler::LookScheduler(const MissionSetup& setup, const InformationModel& 
                              std::uint64_t seed)
     : setup_(setup),
       information_(information),
-      visibility_(setup.world.plan, setup.robot.robot.head, setup.robot.robot.head_limits,
-                  setup.look.visibility, setup.world.ground),
-      head_model_{setup.robot.robot.head, setup.robot.robot.head_limits,
-                  setup.robot.zoom,       setup.look.radius_px,
-                  setup.look.dwell_s,     setup.look.fill,
-                  setup.world.ground},
+      visibility_(visibility(setup)),
+      head_model_(head_model(setup)),
       policy_(planner::make_look_policy(
           setup.look.policy,
           {setup.look.fixed_landmark, RandomStream(seed, "look policy"), setup.world.landmarks,

@@ -38,13 +38,15 @@ EventKind event_of(Outcome outcome) {
   return EventKind::stuck;
 }
 
-ExposureTruth truth_of(const ExposedFrame& exposure) {
+/// A camera that does not move has no looks and none of their errors, a lens that does not zoom no
+/// error of its focal length that changes with them.
+ExposureTruth truth_of(const ExposedFrame& exposure, const Camera& camera) {
   const sim::RobotTruth& truth = exposure.truth;
   ExposureTruth known{truth.stamp, truth.pose, {}};
-  // A camera that does not move has no looks, and none of their errors.
-  if (exposure.shot.look != 0)
-    known.bias = {truth.look_angle_error.pan, truth.look_angle_error.tilt,
-                  truth.look_log_focal_error};
+  if (exposure.shot.look == 0) return known;
+  const bool zooms = std::holds_alternative<ZoomCalibration>(camera.optics);
+  known.bias = {truth.look_angle_error.pan, truth.look_angle_error.tilt,
+                zooms ? truth.look_log_focal_error : 0.0};
   return known;
 }
 
@@ -188,10 +190,11 @@ std::vector<Observation> Loop::observe(const std::vector<Delivery>& deliveries) 
   for (const Delivery& delivery : deliveries) {
     if (!delivery.present) continue;
     const Stamp exposed = delivery.exposure->shot.stamp;
+    const Camera& camera = rig_.at(delivery.exposure->shot.camera);
     auto seen =
         delivery.eye->observe(delivery.capture(), motion_.belief_at(exposed, belief()), request);
     tick_.estimator.truth->exposures.insert(tick_.estimator.truth->exposures.end(), seen.size(),
-                                            truth_of(*delivery.exposure));
+                                            truth_of(*delivery.exposure, camera));
     std::move(seen.begin(), seen.end(), std::back_inserter(observations));
   }
   tick_.timing.track += stopwatch.elapsed_ms();

@@ -42,7 +42,7 @@ PtzAttention::PtzAttention(const MissionSetup& setup, CameraId camera, std::uint
       on_ground_(setup.on_ground()),
       information_(landmark_information(setup)),
       scheduler_(setup, information_, seed),
-      gaze_(setup.robot.robot.head, setup.robot.robot.head_limits, setup.robot.zoom, setup.gaze,
+      gaze_(setup.robot.robot.head, setup.robot.robot.head_limits, setup.robot.zoom(), setup.gaze,
             setup.world.ground),
       base_motion_({setup.robot.robot.base, setup.tick_s}) {}
 

@@ -2,7 +2,6 @@
 
 #include "attention.hpp"
 #include "event_log.hpp"
-#include "localizer_params.hpp"
 #include "look_scheduler.hpp"
 
 #include <cstddef>
@@ -10,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "vigia/mission/planning_parts.hpp"
 #include "vigia/servo/base_motion.hpp"
 #include "vigia/servo/gaze_controller.hpp"
 

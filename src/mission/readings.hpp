@@ -21,9 +21,7 @@ struct Readings {
   /// Of that camera, which the rig must have.
   const Shot& shot_of(CameraId camera) const;
   /// Mean over the tick, by odometry.
-  BaseRates base_rates() const {
-    return {odometry.trans / dt.seconds(), (odometry.rot1 + odometry.rot2) / dt.seconds()};
-  }
+  BaseRates base_rates() const { return mean_rates(odometry); }
 };
 
 inline const Shot& Readings::shot_of(CameraId camera) const {

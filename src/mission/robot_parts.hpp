@@ -15,8 +15,6 @@ namespace vigia::mission {
 // What looks through a robot's cameras, where it looks and what it does when it is lost, as its rig
 // allows. What is made refers to the setup and the log.
 
-bool on_head(const Camera& camera);
-
 /// One for each camera of the rig, in its order. @p delay: of every delivery. @p processing: of a
 /// frame.
 std::vector<CameraFeed> make_feeds(const MissionSetup& setup, const Rig& rig, Duration delay,
@@ -24,7 +22,7 @@ std::vector<CameraFeed> make_feeds(const MissionSetup& setup, const Rig& rig, Du
 /// From an exposure to its delivery, the longest of the cameras.
 Duration longest_latency(const std::vector<CameraFeed>& feeds);
 
-/// Of the first camera on the head; none where none is.
+/// Of the camera that the head directs; none where it directs none.
 std::unique_ptr<Attention> make_attention(const MissionSetup& setup, const Rig& rig,
                                           std::uint64_t seed, EventLog& log);
 std::unique_ptr<Recovery> make_recovery(const MissionSetup& setup, const Rig& rig,

@@ -151,16 +151,22 @@ void describe_localization(ParamVisitor& v, MissionSetup& setup) {
   v.map("bearing_only", setup.bearing_only, "the localizer that learns from bearings alone");
 }
 
-/// Patterns are told apart by their colours.
-void require_colour(ParamVisitor& v, const MissionSetup& setup) {
+/// Eyes for landmarks read pinhole images; patterns are told apart by their colours.
+void require_cameras(ParamVisitor& v, const MissionSetup& setup) {
   const auto& landmarks = setup.world.landmarks.all();
   const bool patterns =
       std::any_of(landmarks.begin(), landmarks.end(), [](const Landmark& landmark) {
         return std::holds_alternative<PatternShape>(landmark.shape);
       });
-  v.require(setup.robot.imaging.colour || !patterns, "robot",
-            "the world has colour patterns, but the robot's camera sees grey: it needs "
-            "camera.colour: true");
+  for (const sim::CameraSetup& camera : setup.robot.cameras) {
+    v.require(zoom_calibration(camera.camera.optics).has_value(), "robot",
+              "camera " + std::to_string(camera.camera.id) +
+                  " is omnidirectional, and no eye reads such images; `vigia help eyes` lists the "
+                  "eyes");
+    v.require(camera.imaging.colour || !patterns, "robot",
+              "the world has colour patterns, but the robot's camera sees grey: it needs "
+              "camera.colour: true");
+  }
 }
 
 void describe_planner(ParamVisitor& v, MissionSetup& setup) {
@@ -213,7 +219,7 @@ void describe(ParamVisitor& v, MissionSetup& setup) {
          "of discs; `vigia help trackers` tells them apart");
   v.map("localization", "who estimates the pose", [&] { describe_localization(v, setup); });
   v.map("planner", "when and where the robot looks", [&] { describe_planner(v, setup); });
-  require_colour(v, setup);
+  require_cameras(v, setup);
   setup.gaze.look_angle = setup.noise.sensor.look_angle;
   v.map("gaze", setup.gaze, "how head and zoom follow an order");
   v.map("pilot", "how the base follows the route", [&] { describe_pilot(v, setup); });

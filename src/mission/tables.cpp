@@ -1,5 +1,7 @@
 #include "tables.hpp"
 
+#include "tum.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -19,14 +21,6 @@ void put(Buffer& buffer, fmt::format_string<Args...> format, Args&&... args) {
 
 std::string_view view(const Buffer& buffer) {
   return {buffer.data(), buffer.size()};
-}
-
-/// One line of a TUM trajectory: stamp x y z qx qy qz qw.
-void write_tum(OutputFile& file, Stamp stamp, const Pose2& pose) {
-  Buffer line;
-  put(line, "{:.6f} {:.6f} {:.6f} 0 0 0 {:.9f} {:.9f}\n", stamp.seconds(), pose.x, pose.y,
-      std::sin(0.5 * pose.theta), std::cos(0.5 * pose.theta));
-  file.write(view(line));
 }
 
 /// The columns of the first eye stand beside those of the attention, without a prefix; those of
@@ -123,6 +117,7 @@ nlohmann::json percentiles(const std::vector<TickTiming>& timings, double TickTi
 
 Tables::Tables(const std::filesystem::path& folder, const MissionStart& start)
     : eyes_(start.eyes),
+      ground_(start.setup.world.ground),
       ticks_(folder / "ticks.csv"),
       events_(folder / "events.jsonl"),
       timing_(folder / "timing.csv"),
@@ -153,9 +148,9 @@ void Tables::tick(const Tick& tick) {
   line.push_back('\n');
   ticks_.write(view(line));
 
-  write_tum(truth_, estimator.now, tick.truth.pose);
+  truth_.write(tum_line(estimator.now, tick.truth.pose, ground_));
   for (std::size_t i = 0; i < localizers_.size(); ++i)
-    write_tum(localizers_[i], estimator.now, estimator.localizers[i].belief->pose);
+    localizers_[i].write(tum_line(estimator.now, estimator.localizers[i].belief->pose, ground_));
 
   const TickTiming& t = tick.timing;
   timings_.push_back(t);

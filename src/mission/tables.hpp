@@ -23,6 +23,7 @@ class Tables {
 
  private:
   std::vector<const perception::Eye*> eyes_;
+  Ground ground_;
   OutputFile ticks_;
   OutputFile events_;
   OutputFile timing_;

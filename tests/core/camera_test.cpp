@@ -103,8 +103,16 @@ TEST(ZoomCalibration, FindsTheZoomOfAFocalLength) {
     EXPECT_NEAR(zoom.zoom_for_focal(zoom.at(zoom_mm).px), zoom_mm, 1e-12);
 }
 
+TEST(ZoomCalibration, OfOneSampleIsALensThatDoesNotZoom) {
+  const ZoomCalibration lens(640, 480, 320.0, 240.0, {{8.0, 700.0, 0.1}});
+  EXPECT_DOUBLE_EQ(lens.at(100.0).px, 700.0);
+  EXPECT_DOUBLE_EQ(lens.at(1.0).kdu, 0.1);
+  EXPECT_DOUBLE_EQ(lens.at(8.0).u0, 320.0);
+  EXPECT_DOUBLE_EQ(lens.zoom_for_focal(9000.0), 8.0);
+}
+
 TEST(ZoomCalibration, RejectsSamplesThatDoNotIncrease) {
-  EXPECT_THROW(ZoomCalibration(640, 480, 320.0, 240.0, {{8.0, 700.0, 0.0}}), std::invalid_argument);
+  EXPECT_THROW(ZoomCalibration(640, 480, 320.0, 240.0, {}), std::invalid_argument);
   EXPECT_THROW(ZoomCalibration(640, 480, 320.0, 240.0, {{8.0, 700.0, 0.0}, {9.0, 700.0, 0.0}}),
                std::invalid_argument);
   EXPECT_THROW(ZoomCalibration(640, 480, 320.0, 240.0, {{8.0, 700.0, 0.0}, {8.0, 800.0, 0.0}}),

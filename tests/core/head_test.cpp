@@ -75,6 +75,9 @@ TEST(Head, FollowsTheBaseByTheJacobianOfFiniteDifferences) {
     const auto jacobian = camera_jacobian_base(geometry, q);
     const auto by_speed = twist_between(to_isometry({-kStep, 0.0, 0.0}) * rMc,
                                         to_isometry({kStep, 0.0, 0.0}) * rMc, rMc, 2.0 * kStep);
+    const auto sideways = twist_between(to_isometry({0.0, -kStep, 0.0}) * rMc,
+                                        to_isometry({0.0, kStep, 0.0}) * rMc, rMc, 2.0 * kStep);
+    EXPECT_LT((camera_twist_sideways(rMc) - sideways).norm(), 1e-8);
     const auto by_turn = twist_between(to_isometry({0.0, 0.0, -kStep}) * rMc,
                                        to_isometry({0.0, 0.0, kStep}) * rMc, rMc, 2.0 * kStep);
     EXPECT_LT((jacobian.col(0) - by_speed).norm(), 1e-9);

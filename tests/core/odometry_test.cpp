@@ -28,6 +28,54 @@ Drawn draw(RandomStream& random) {
           {random.uniform(-1.0, 1.0), random.uniform(-2.0, 2.0), random.uniform(-1.0, 1.0)}};
 }
 
+TEST(Odometry, OfAnOmnidirectionalBaseIsTheArcOfItsThreeRates) {
+  RandomStream random(7, "crab");
+  for (int i = 0; i < 50; ++i) {
+    const Pose2 start{1.0, -2.0, random.uniform(-3.0, 3.0)};
+    const BaseRates rates{random.uniform(-0.5, 0.5), random.uniform(-1.0, 1.0),
+                          random.uniform(-0.5, 0.5)};
+    const Stamp end = Stamp::from_seconds(0.8);
+    // Many short steps in the directions of the base.
+    constexpr int kSteps = 20000;
+    Pose2 pose = start;
+    for (int k = 0; k < kSteps; ++k) {
+      const double h = 0.8 / kSteps;
+      const double middle = pose.theta + 0.5 * rates.w * h;
+      pose.x += h * (rates.v * std::cos(middle) - rates.vy * std::sin(middle));
+      pose.y += h * (rates.v * std::sin(middle) + rates.vy * std::cos(middle));
+      pose.theta += rates.w * h;
+    }
+    const OdometryIncrement u = arc_increment(rates, {}, end);
+    EXPECT_LT(difference(move(start, u), pose).norm(), 1e-8);
+    const OdometryIncrement seen = crab_increment(start, move(start, u), 0.8 * rates.w, {}, end);
+    EXPECT_LT(difference(move(start, seen), pose).norm(), 1e-8);
+    EXPECT_NEAR(seen.trans, u.trans, 1e-12);
+    EXPECT_NEAR(wrap_angle(seen.crab - u.crab), 0.0, 1e-9);
+  }
+}
+
+TEST(Odometry, GoingSidewaysIsNoTurn) {
+  const OdometryNoise noise{0.0, 0.0, 0.02};
+  const OdometryIncrement u = arc_increment({0.0, 0.0, 0.3}, {}, Stamp::from_seconds(1.0));
+  EXPECT_NEAR(u.rot1, kPi / 2.0, 1e-12);
+  EXPECT_TRUE(control_covariance(u, noise).isZero(1e-20));
+  const BaseRates back = mean_rates(u);
+  EXPECT_NEAR(back.v, 0.0, 1e-15);
+  EXPECT_NEAR(back.vy, 0.3, 1e-15);
+}
+
+TEST(Odometry, OfAUnicycleIsTheSameBitsWhicheverWayItIsAskedFor) {
+  const Stamp end = Stamp::from_seconds(0.04);
+  for (const double v : {0.3, -0.2, 0.0}) {
+    const OdometryIncrement a = arc_increment(v, 0.4, {}, end);
+    const OdometryIncrement b = arc_increment(BaseRates{v, 0.4}, {}, end);
+    EXPECT_EQ(a.rot1, b.rot1);
+    EXPECT_EQ(a.trans, b.trans);
+    EXPECT_EQ(a.rot2, b.rot2);
+    EXPECT_EQ(b.crab, 0.0);
+  }
+}
+
 TEST(Odometry, MovesAlongTheDirectionAfterTheFirstTurn) {
   const Pose2 moved = move({1.0, 2.0, 0.0}, with_control({kPi / 2.0, 1.0, kPi / 4.0}));
   EXPECT_NEAR(moved.x, 1.0, 1e-15);

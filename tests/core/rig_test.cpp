@@ -42,5 +42,18 @@ TEST(Rig, ZoomsTheCamerasThatHaveAZoom) {
   EXPECT_TRUE(std::holds_alternative<UnifiedOmni>(rig.at(4).model(80.0)));
 }
 
+TEST(Rig, DirectsTheFirstPinholeOnTheHeadWithAZoomOrWithout) {
+  Rig rig = mixed_rig();
+  EXPECT_EQ(directed_camera(rig), &rig.cameras[0]);
+  rig.cameras[0].optics = CameraModel{Intrinsics{}};
+  EXPECT_EQ(directed_camera(rig), &rig.cameras[0]);
+  EXPECT_DOUBLE_EQ(zoom_calibration(rig.cameras[0].optics)->at(0.0).px, Intrinsics{}.px);
+  rig.cameras[0].optics = CameraModel{UnifiedOmni{}};
+  EXPECT_EQ(directed_camera(rig), nullptr);
+  rig.cameras[0].optics = CameraModel{Intrinsics{}};
+  rig.cameras[0].mount = FixedMount{};
+  EXPECT_EQ(directed_camera(rig), nullptr);
+}
+
 }  // namespace
 }  // namespace vigia

@@ -107,6 +107,49 @@ TEST(BearingOnly, IsConsistentOverAHundredDrivesFromAPrior) {
   EXPECT_LT(other, 0.01 * fused);
 }
 
+TEST(BearingOnly, StaysConsistentWhereTheRobotPassesALandmarkWithinHalfAMetre) {
+  const Landmark near = test::disc(1, 3.0, 0.3, 1.4, -90.0);
+  const Landmark far = test::disc(2, 9.0, 0.5, 1.4, 180.0);
+  const LandmarkMap map({near, far});
+  double nees = 0.0;
+  int instants = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    RandomStream random(seed, "passing");
+    Drive drive;
+    BearingOnlyLocalizer localizer(map, {head_rig(drive.geometry), {}}, matched_bearings(drive));
+    const Eigen::Vector3d sigma(0.1, 0.1, from_deg(2.0));
+    Pose2 pose{1.0, 0.0, 0.0};
+    const Pose2 believed{pose.x + sigma.x() * random.normal(), pose.y + sigma.y() * random.normal(),
+                         pose.theta + sigma.z() * random.normal()};
+    localizer.reset({}, Prior{believed, sigma.cwiseAbs2().asDiagonal()});
+    for (int tick = 0; tick < 250; ++tick) {
+      const auto u = arc_increment(0.2, 0.0, Stamp::from_seconds(0.04 * tick),
+                                   Stamp::from_seconds(0.04 * (tick + 1)));
+      OdometryIncrement read = u;
+      const Eigen::Matrix3d Q = control_covariance(u, drive.noise.odometry);
+      read.rot1 += std::sqrt(Q(0, 0)) * random.normal();
+      read.trans += std::sqrt(Q(1, 1)) * random.normal();
+      read.rot2 += std::sqrt(Q(2, 2)) * random.normal();
+      pose = move(pose, u);
+      localizer.predict(read);
+      if (tick % 25 != 0) continue;
+      const Landmark& landmark = tick % 50 == 0 ? near : far;
+      const LookBias bias = test::draw_bias(random, drive.noise.sensor);
+      const Shot shot = test::aimed_shot(landmark, {}, pose, bias, 1 + tick / 25, u.to);
+      if (!disc_image(landmark, pinhole(shot),
+                      to_isometry(pose) * camera_in_base(HeadGeometry{}, shot.head)))
+        continue;
+      localizer.update(
+          test::observe(landmark, shot, {}, pose, bias, 0.0, drive.noise.pixel_sigma, random));
+      nees += bearing_nees(localizer.belief(), pose);
+      ++instants;
+    }
+  }
+  EXPECT_GT(instants, 1000);
+  EXPECT_LT(nees / (3.0 * instants), 1.15);
+  EXPECT_GT(nees / (3.0 * instants), 0.85);
+}
+
 TEST(BearingOnly, StartedWithoutAPriorItIsLostThenFindsItselfAndIsRight) {
   int found = 0;
   int right = 0;

@@ -13,7 +13,7 @@ class RobotPartsTest : public ::testing::Test {
     Camera camera;
     camera.id = id;
     camera.mount = FixedMount{};
-    camera.optics = CameraModel(setup_.robot.zoom.at(8.0));
+    camera.optics = CameraModel(setup_.robot.zoom().at(8.0));
     return camera;
   }
   Camera on_the_head(CameraId id) const {
@@ -58,7 +58,7 @@ TEST_F(RobotPartsTest, OnlyADirectedEyeWaitsToBeAsked) {
   const auto frame = simulator.expose();
   Shot shot;
   shot.stamp = simulator.robot().truth().stamp;
-  shot.model = setup_.robot.zoom.at(8.0);
+  shot.model = setup_.robot.zoom().at(8.0);
   const auto feeds = make_feeds(setup_, Rig{{fixed(0), on_the_head(1)}}, {}, {});
   EXPECT_FALSE(feeds.front().eye().observe({*frame, shot}, {}, std::nullopt).empty());
   EXPECT_TRUE(feeds.back().eye().observe({*frame, shot}, {}, std::nullopt).empty());

@@ -2,8 +2,10 @@
 
 #include "support/process.hpp"
 #include "support/temp_dir.hpp"
+#include "tum.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -54,6 +56,22 @@ TEST_F(RunFolderTest, WritesTumTrajectoriesOfExactlyEightColumnsWithoutTrailingB
       last = stamp;
     }
   }
+}
+
+TEST(TumLine, IsInThreeDimensionsOnASlope) {
+  Eigen::Isometry3d wMg = Eigen::Isometry3d::Identity();
+  wMg.linear() = Eigen::AngleAxisd(-0.1, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  wMg.translation().z() = 0.5;
+  std::istringstream line(tum_line(Stamp::from_seconds(1.5), {2.0, 1.0, 0.0}, Ground(wMg)));
+  std::vector<double> values;
+  for (double value = 0.0; line >> value;) values.push_back(value);
+  ASSERT_EQ(values.size(), 8U);
+  EXPECT_NEAR(values[1], 2.0 * std::cos(0.1), 1e-6);
+  EXPECT_NEAR(values[3], 0.5 + 2.0 * std::sin(0.1), 1e-6);
+  EXPECT_NEAR(values[5], -std::sin(0.05), 1e-9);
+  EXPECT_NEAR(values[7], std::cos(0.05), 1e-9);
+  EXPECT_EQ(tum_line(Stamp::from_seconds(1.5), {2.0, 1.0, 0.0}, {}),
+            "1.500000 2.000000 1.000000 0 0 0 0.000000000 1.000000000\n");
 }
 
 TEST_F(RunFolderTest, WritesATableWhoseRowsAreAsWideAsItsHeader) {

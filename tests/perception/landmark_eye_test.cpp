@@ -20,7 +20,7 @@ class LandmarkEyeTest : public ::testing::Test {
         frame_((simulator_.advance(Duration{40'000'000}), simulator_.expose())) {
     const HeadReading head = simulator_.robot().read_head();
     shot_.stamp = simulator_.robot().truth().stamp;
-    shot_.model = setup_.robot.zoom.at(head.zoom_mm);
+    shot_.model = setup_.robot.zoom().at(head.zoom_mm);
     shot_.head = head.angles;
     shot_.zoom_mm = head.zoom_mm;
     belief_.stamp = shot_.stamp;

@@ -39,6 +39,12 @@ TEST(ZoomControl, StopsAtTheEndsOfItsRange) {
   EXPECT_GT(control.rate(test_zoom(), 8.0, 10.0, 24.0, 0.0), 0.0);
 }
 
+TEST(ZoomControl, LeavesALensAloneThatDoesNotZoom) {
+  ZoomControl control({1.5, 0.1});
+  const ZoomCalibration lens(640, 480, 319.5, 239.5, {{0.0, 900.0, 0.0}});
+  EXPECT_EQ(control.rate(lens, 0.0, 10.0, 24.0, -0.5), 0.0);
+}
+
 TEST(ZoomControl, BringsADiscToItsWantedSizeWhileTheRobotApproaches) {
   const ZoomCalibration zoom = test_zoom();
   ZoomControl control({1.5, 0.05});

@@ -103,9 +103,11 @@ TEST(MotionBlur, IsTheMeanOfTheInstantsWithTheNoiseOfOne) {
 }
 
 RobotSetup robot_setup() {
-  RobotSetup setup;
-  setup.zoom = ZoomCalibration(640, 480, 319.5, 239.5, {{8, 582, 0.0}, {48, 3490, 0.0}});
-  setup.imaging.noise_sigma = 0.0;
+  ImagingParams imaging;
+  imaging.noise_sigma = 0.0;
+  RobotSetup setup = pan_tilt_zoom_robot(
+      usual_robot(), ZoomCalibration(640, 480, 319.5, 239.5, {{8, 582, 0.0}, {48, 3490, 0.0}}),
+      imaging);
   setup.robot.sensor = {0.0, 0.0, 0.0};
   return setup;
 }

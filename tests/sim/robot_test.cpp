@@ -259,5 +259,82 @@ TEST(Robot, RefusesAVelocityInTheWrongStateOrOfTheWrongLength) {
   EXPECT_THROW(robot.setVelocity(vpRobot::MIXT_FRAME, vpColVector(6, 0.0)), vpRobotException);
 }
 
+RobotParams omnidirectional_robot() {
+  RobotParams params = exact_robot();
+  params.base.side_speed = 0.25;
+  params.base.side_acceleration = 0.4;
+  return params;
+}
+
+TEST(OmnidirectionalRobot, KeepsEachOfItsThreeAxesWithinItsOwnLimits) {
+  const RobotParams params = omnidirectional_robot();
+  Robot robot(params, {}, 8.0, 1);
+  robot.command({9.0, -9.0, 9.0}, {});
+  RobotTruth before = robot.truth();
+  for (int i = 0; i < 50; ++i) {
+    robot.advance(kTick);
+    EXPECT_LE(std::abs(robot.truth().base.vy - before.base.vy),
+              params.base.side_acceleration * kTick.seconds() + 1e-12);
+    before = robot.truth();
+  }
+  EXPECT_DOUBLE_EQ(before.base.v, params.base.speed);
+  EXPECT_DOUBLE_EQ(before.base.w, -params.base.turn_rate);
+  EXPECT_DOUBLE_EQ(before.base.vy, params.base.side_speed);
+}
+
+TEST(OmnidirectionalRobot, AUnicycleDoesNotGoSideways) {
+  Robot robot(exact_robot(), {}, 8.0, 1);
+  robot.command({0.0, 0.0, 0.3}, {});
+  robot.advance(Duration::from_seconds(1.0));
+  EXPECT_EQ(robot.truth().pose.y, 0.0);
+}
+
+TEST(OmnidirectionalRobot, OdometryWithoutNoiseReproducesTheTruePose) {
+  Robot robot(omnidirectional_robot(), {1.0, 2.0, 0.3}, 8.0, 1);
+  Pose2 reckoned{1.0, 2.0, 0.3};
+  for (int i = 0; i < 200; ++i) {
+    const double s = 0.05 * i;
+    robot.command({0.3 * std::cos(s), 0.4 * std::sin(s), -0.2 * std::sin(0.7 * s)}, {});
+    robot.advance(kTick);
+    reckoned = move(reckoned, robot.read_odometry());
+  }
+  EXPECT_LT(difference(reckoned, robot.truth().pose).norm(), 1e-9);
+}
+
+TEST(OmnidirectionalRobot, GoesSidewaysWithoutMoreErrorOfHeading) {
+  RobotParams params = omnidirectional_robot();
+  params.odometry = {0.0, 0.0, 0.05};
+  Robot robot(params, {}, 8.0, 3);
+  robot.command({0.0, 0.0, 0.25}, {});
+  for (int i = 0; i < 100; ++i) {
+    robot.advance(kTick);
+    const OdometryIncrement u = robot.read_odometry();
+    EXPECT_NEAR(u.rot1 + u.rot2, 0.0, 1e-12);
+  }
+  EXPECT_GT(robot.truth().pose.y, 0.7);
+}
+
+TEST(OmnidirectionalRobot, HasFiveAxesInViSP) {
+  Robot robot(omnidirectional_robot(), {0.5, 0.2, 0.4}, 8.0, 1);
+  vpMatrix eJe;
+  robot.get_eJe(eJe);
+  ASSERT_EQ(eJe.getCols(), 5U);
+  robot.setRobotState(vpRobot::STATE_VELOCITY_CONTROL);
+  robot.setVelocity(vpRobot::ARTICULAR_FRAME,
+                    vpColVector(std::vector<double>{0.1, 0.2, 0.15, 0.3, 0.1}));
+  robot.advance(Duration::from_seconds(2.0));
+  EXPECT_DOUBLE_EQ(robot.truth().base.vy, 0.15);
+  EXPECT_DOUBLE_EQ(robot.truth().head_rates.pan, 0.3);
+  // The camera's twist is the Jacobian's.
+  robot.get_eJe(eJe);
+  vpColVector rates(std::vector<double>{0.1, 0.2, 0.15, 0.3, 0.1});
+  const vpColVector twist = eJe * rates;
+  constexpr double kStep = 1e-5;
+  const Eigen::Isometry3d moved =
+      robot.camera_pose_after(-kStep).inverse() * robot.camera_pose_after(kStep);
+  for (unsigned i = 0; i < 3; ++i)
+    EXPECT_NEAR(twist[i], moved.translation()(i) / (2.0 * kStep), 1e-6);
+}
+
 }  // namespace
 }  // namespace vigia::sim

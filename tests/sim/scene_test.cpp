@@ -93,9 +93,9 @@ std::vector<imaging::Run> random_runs(RandomStream& random, int most) {
 
 TEST(Scene, RunsEqualTheCropOfTheFullFrameByteForByte) {
   const WorldMap world = test_room();
-  auto look = std::make_shared<Appearance>(*appearance_of(world, "clutter_per_m2: 1"));
-  look->stripes.push_back({{1.0, 1.0}, {11.0, 6.0}});
-  const Scene scene(world, look, 3);
+  MapReader reader(parse_config("version: 1\nstripes: [{from_m: [1, 1], to_m: [11, 6]}]\n", "test"),
+                   "world");
+  const Scene scene(world, read_appearance(reader, world), 3);
   ImagingParams params;
   params.colour = true;
   UnifiedOmni mirror;

@@ -12,9 +12,8 @@ namespace {
 constexpr double kWorldSigmas = 4.5;
 
 RobotSetup robot_of_world() {
-  RobotSetup setup;
-  setup.zoom = ZoomCalibration(640, 480, 319.5, 239.5, {{8, 582, 0.06}, {48, 3490, 0.002}});
-  return setup;
+  return pan_tilt_zoom_robot(
+      usual_robot(), ZoomCalibration(640, 480, 319.5, 239.5, {{8, 582, 0.06}, {48, 3490, 0.002}}));
 }
 
 Simulator simulator(const DisturbanceParams& disturbances, std::uint64_t seed) {
@@ -66,7 +65,7 @@ TEST(TrueWorld, WithoutDisturbancesItIsTheMapAndTheSamePixels) {
     EXPECT_EQ(world.true_world().landmarks.find(landmark.id)->wMl.matrix(), landmark.wMl.matrix());
   const Scene plain(map, nullptr, derive_seed(3, "scene"));
   const auto direct =
-      plain.expose(world.robot().camera_pose(), robot_of_world().zoom.at(8), {}, {});
+      plain.expose(world.robot().camera_pose(), robot_of_world().zoom().at(8), {}, {});
   EXPECT_TRUE(imaging::grey_image(*world.expose()) == imaging::grey_image(*direct));
   EXPECT_EQ(world.latency().ns, 0);
 }

@@ -75,8 +75,8 @@ TEST(Walkers, StepOutOfTheWayOfARobotInTheOpen) {
 }
 
 TEST(Walkers, AreSeenByTheRangeRingAndCountAsSomethingToCollideWith) {
-  RobotSetup setup;
-  setup.zoom = ZoomCalibration(640, 480, 319.5, 239.5, {{8, 582, 0.0}, {48, 3490, 0.0}});
+  RobotSetup setup = pan_tilt_zoom_robot(
+      usual_robot(), ZoomCalibration(640, 480, 319.5, 239.5, {{8, 582, 0.0}, {48, 3490, 0.0}}));
   setup.range_ring.emplace();
   setup.range_ring->dropout = setup.range_ring->sigma_m = setup.range_ring->sigma_relative = 0.0;
   DisturbanceParams disturbances;

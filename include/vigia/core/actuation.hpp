@@ -5,10 +5,12 @@
 
 namespace vigia {
 
-/// Speed of the base: forward (m/s) and counter-clockwise turn (rad/s).
+/// Speed of the base: forward (m/s), counter-clockwise turn (rad/s) and, of an omnidirectional one,
+/// to the left (m/s).
 struct BaseRates {
   double v = 0.0;
   double w = 0.0;
+  double vy = 0.0;
 };
 
 /// Rates of the head and the zoom.
@@ -23,6 +25,10 @@ struct BaseLimits {
   double acceleration = 0.5;       ///< m/s²
   double turn_rate = 0.8;          ///< rad/s
   double turn_acceleration = 2.0;  ///< rad/s²
+  double side_speed = 0.0;         ///< m/s; 0: a unicycle
+  double side_acceleration = 0.5;  ///< m/s²
+
+  bool omnidirectional() const { return side_speed > 0.0; }
 };
 
 struct HeadLimits {

@@ -45,11 +45,11 @@ struct ZoomSample {
 };
 
 /// The calibrated camera over the zoom's range. Linear between the samples; focal length strictly
-/// increasing with zoom_mm.
+/// increasing with zoom_mm. Of one sample: a lens that does not zoom.
 class ZoomCalibration {
  public:
   ZoomCalibration() = default;
-  /// At least two samples. Throws std::invalid_argument unless zoom_mm and px strictly increase.
+  /// At least one sample. Throws std::invalid_argument unless zoom_mm and px strictly increase.
   ZoomCalibration(int width, int height, double u0, double v0, std::vector<ZoomSample> samples);
 
   /// The intrinsics at a zoom position, clamped to the table's range.

@@ -27,6 +27,9 @@ struct UnifiedOmni {
   double max_angle = from_deg(105.0);  ///< rad off the axis, the edge of mirror or lens
 };
 
+/// Smallest z of the unit directions that are seen.
+double min_z(const UnifiedOmni& omni);
+
 /// What turns directions of frame c into pixels.
 using CameraModel = std::variant<Intrinsics, UnifiedOmni>;
 

@@ -34,6 +34,12 @@ Eigen::Matrix<double, 6, 2> camera_jacobian_head(const HeadGeometry& geometry,
 Eigen::Matrix<double, 6, 2> camera_jacobian_base(const HeadGeometry& geometry,
                                                  const HeadAngles& angles);
 
+/// Twist (v, ω) of a camera at rMc, in its own frame c, while the base goes to its left at 1 m/s.
+Eigen::Matrix<double, 6, 1> camera_twist_sideways(const Eigen::Isometry3d& rMc);
+
+/// Columns ∂(v, ω)/∂(base speed, base turn rate) of a camera at rMc, in its own frame c.
+Eigen::Matrix<double, 6, 2> camera_jacobian_base(const Eigen::Isometry3d& rMc);
+
 /// Pan and tilt that put the optical axis through a point of the base frame (camera_offset_h of
 /// zero; a lateral offset is compensated to first order by iterating three times).
 HeadAngles aim_at(const HeadGeometry& geometry, const Eigen::Vector3d& p_r);

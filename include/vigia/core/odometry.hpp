@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "vigia/core/actuation.hpp"
 #include "vigia/core/pose.hpp"
 #include "vigia/core/stamp.hpp"
 
@@ -15,6 +16,9 @@ struct OdometryIncrement {
   double rot1 = 0.0;
   double trans = 0.0;
   double rot2 = 0.0;
+  /// The part of rot1 that is no turn: an omnidirectional base goes in a direction that it does not
+  /// face, and rot2 takes it back. Of a unicycle 0. It counts for the errors alone.
+  double crab = 0.0;
 };
 
 /// Random-walk error of odometry: variances that grow with the distance driven and the angle
@@ -40,8 +44,18 @@ Eigen::Matrix3d move_jacobian_control(const Pose2& pose, const OdometryIncrement
 OdometryIncrement chord_increment(const Pose2& before, const Pose2& after, double turned,
                                   Stamp from, Stamp to);
 
+/// The same of an omnidirectional base: trans is the chord, crab its direction against the heading
+/// in the middle of the turn.
+OdometryIncrement crab_increment(const Pose2& before, const Pose2& after, double turned, Stamp from,
+                                 Stamp to);
+
 /// The increment of a base that ran at constant speed v (m/s) and turn rate w (rad/s): an arc,
 /// whose chord is trans.
 OdometryIncrement arc_increment(double v, double w, Stamp from, Stamp to);
+/// The same of a base that may run sideways as well.
+OdometryIncrement arc_increment(const BaseRates& rates, Stamp from, Stamp to);
+
+/// The rates at which a base that runs on a straight line while it turns makes the increment.
+BaseRates mean_rates(const OdometryIncrement& u);
 
 }  // namespace vigia

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -17,13 +18,23 @@ struct FixedMount {
   Eigen::Isometry3d rMc = Eigen::Isometry3d::Identity();
 };
 
+/// Turned by the head, or fixed to the base.
+using CameraMount = std::variant<HeadGeometry, FixedMount>;
+
+/// rMc of a camera so mounted when the head stands at @p head.
+Eigen::Isometry3d mounted_camera(const CameraMount& mount, const HeadAngles& head);
+
 /// A motorised zoom, or optics that do not change.
 using Optics = std::variant<ZoomCalibration, CameraModel>;
+
+/// The focal length by the zoom's position: of a pinhole that does not zoom a table of one row at
+/// 0 mm, of other optics nothing.
+std::optional<ZoomCalibration> zoom_calibration(const Optics& optics);
 
 /// One camera of a robot, as the robot knows it.
 struct Camera {
   CameraId id = 0;
-  std::variant<HeadGeometry, FixedMount> mount;  ///< turned by the head, or fixed
+  CameraMount mount;
   Optics optics = CameraModel{};
   double period_s = 0.0;   ///< between two exposures; 0: one in every tick
   double phase_s = 0.0;    ///< of the first exposure
@@ -44,6 +55,12 @@ struct Rig {
   /// The camera of that id, which the rig must have: std::out_of_range.
   const Camera& at(CameraId id) const;
 };
+
+bool on_head(const Camera& camera);
+
+/// The camera that an attention directs: the first on the head that is a pinhole, with a zoom or
+/// without, or nullptr.
+const Camera* directed_camera(const Rig& rig);
 
 /// What places a robot's cameras in the world.
 struct RigOnGround {

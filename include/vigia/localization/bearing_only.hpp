@@ -16,9 +16,9 @@ namespace vigia::localization {
 struct BearingOnlyParams {
   OdometryNoise odometry;
   SensorNoise sensor;
-  /// σ of what a bearing leaves out, white per image, rad: the centre of a disc's image is not the
-  /// image of its centre, and a look's images share their error.
-  double bearing_floor = 8.7e-4;
+  /// σ of what a bearing leaves out, white per image, rad: of a disc's image more is uncertain than
+  /// its centre, and a look's images share their error.
+  double bearing_floor = from_deg(0.05);
   double gate_probability = 0.999;  ///< of the association's gate and of the bearing's own
   double ambiguity_ratio = 20.0;    ///< see EkfParams
   double history_s = 1.0;           ///< how late an observation may be

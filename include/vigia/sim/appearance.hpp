@@ -11,12 +11,15 @@ namespace vigia::sim {
 /// the disc: only the plate round it makes it no landmark.
 enum class ClutterKind { blob, ellipse, ring, square, half_disc, disc };
 
-/// One dark mark on a face. size_m is half its greatest width.
+/// What carries a mark.
+enum class ClutterPlace { face, floor, ceiling };
+
+/// One dark mark. size_m is half its greatest width.
 struct Clutter {
   ClutterKind kind = ClutterKind::blob;
   Eigen::Vector3d centre_w = Eigen::Vector3d::Zero();
-  double normal_yaw = 0.0;  ///< outward normal in the floor plane, rad; unused on the floor
-  bool on_floor = false;
+  ClutterPlace place = ClutterPlace::face;
+  double normal_yaw = 0.0;  ///< of a face: outward normal in the floor plane, rad
   double size_m = 0.05;
   double turn = 0.0;  ///< about the normal, rad
   double grey = 60.0;

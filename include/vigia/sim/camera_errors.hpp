@@ -5,20 +5,27 @@
 
 #include <Eigen/Geometry>
 
-#include "vigia/core/camera.hpp"
+#include "vigia/core/rig.hpp"
 #include "vigia/sim/disturbances.hpp"
 
 namespace vigia::sim {
 
-/// How far the calibration of camera and head is from the truth: drawn once, constant since.
+/// How far the calibration of a camera and what carries it is from the truth: drawn once, constant
+/// since. Each camera of a rig has its own.
 class CameraErrors {
  public:
   CameraErrors() = default;
-  CameraErrors(const DisturbanceParams& disturbances, std::uint64_t seed);
+  CameraErrors(const DisturbanceParams& disturbances, std::uint64_t seed, CameraId camera = 0);
 
   /// The camera's true intrinsics, where the table says @p calibrated at a zoom position that is
   /// the fraction @p u of the way from the wide to the long end.
   Intrinsics true_intrinsics(const Intrinsics& calibrated, double u) const;
+
+  /// The true model of optics that do not zoom: focal length and principal point are off.
+  CameraModel true_model(const CameraModel& calibrated) const;
+
+  /// How a camera is truly mounted, but for mounting() of a head that carries it.
+  CameraMount true_mount(const CameraMount& known) const;
 
   /// rMr': the base frame as the head truly sits on it. The head turns by yaw, pitch and roll about
   /// the crossing of its axes @p mount_r. Nothing when the head is mounted right.
@@ -31,6 +38,7 @@ class CameraErrors {
   bool askew_ = false;
   Eigen::Vector3d turn_ = Eigen::Vector3d::Zero();    ///< yaw, pitch, roll
   Eigen::Vector3d offset_ = Eigen::Vector3d::Zero();  ///< m
+  Eigen::Vector3d camera_offset_h_ = Eigen::Vector3d::Zero();
 };
 
 }  // namespace vigia::sim

@@ -31,10 +31,12 @@ struct LightParams {
   double step_every_s = 30;    ///< mean time between two steps of some lamp; 0: none
 };
 
-/// The head sits a little askew on the base.
+/// The head sits a little askew on the base, and the camera beside its place on the head; a fixed
+/// camera sits askew on the base.
 struct MountingParams {
   double angle = from_deg(0.25);  ///< σ of yaw, pitch and roll, rad
   double offset_m = 0.003;        ///< σ of each coordinate
+  double camera_offset_m = 0.0;   ///< σ of each coordinate of the optical centre in the head
 };
 
 /// The table of focal lengths is a little wrong.
@@ -57,7 +59,7 @@ struct WheelSlipParams {
   double per_m = 0.15;  ///< slips that begin per metre driven
   double min_m = 0.1;   ///< length of a slip
   double max_m = 0.4;
-  double min_loss = 0.02;  ///< share of the way that is lost during a slip
+  double min_loss = 0.02;  ///< share of the distance that is lost during a slip
   double max_loss = 0.10;
   double skew_per_m = from_deg(3.0);  ///< σ of the turn during a slip, rad per metre
   double diameter = 0.005;            ///< σ of the relative error of the wheels' diameter

@@ -10,6 +10,7 @@
 #include "vigia/core/odometry.hpp"
 #include "vigia/core/pose.hpp"
 #include "vigia/core/random.hpp"
+#include "vigia/core/rig.hpp"
 #include "vigia/core/sensor_noise.hpp"
 #include "vigia/sim/wheel_slip.hpp"
 
@@ -38,10 +39,12 @@ struct RobotTruth {
   double look_log_focal_error = 0.0;
 };
 
-/// Unicycle base with a pan-tilt head and a motorised zoom, as a ViSP simulated robot of four
-/// velocity axes (v, ω, pan, tilt) and the zoom beside them. Every axis is limited by itself in
-/// rate, acceleration and range; an axis that meets its stop stands still there. The base moves on
-/// exact arcs, in steps of at most 5 ms while it accelerates.
+/// Unicycle or omnidirectional base with a pan-tilt head and a motorised zoom, as a ViSP simulated
+/// robot of four velocity axes (v, ω, pan, tilt), of five (v, ω, v to the left, pan, tilt) when it
+/// is omnidirectional, and the zoom beside them. Every axis is limited by itself in rate,
+/// acceleration and range; an axis that meets its stop stands still there. The base moves on exact
+/// arcs, in steps of at most 5 ms while it accelerates. A robot without a head has one that does
+/// not move.
 class Robot : public vpRobotSimulator {
  public:
   /// Stands still at @p start, the head at rest at (0, 0) or the nearest angle in its range.
@@ -53,6 +56,8 @@ class Robot : public vpRobotSimulator {
 
   /// Range of the zoom motor, mm. Unlimited until it is set.
   void set_zoom_range(double min_mm, double max_mm);
+  /// The camera that camera_pose() and ViSP's interface mean. That of the head unless it is set.
+  void set_camera(const CameraMount& mount) { camera_ = mount; }
 
   /// @name Disturbances
   /// None of them until they are set.
@@ -87,16 +92,20 @@ class Robot : public vpRobotSimulator {
   Eigen::Isometry3d camera_pose() const;
   /// The same @p s seconds from now (or before, negative) if every axis ran on at its present rate.
   Eigen::Isometry3d camera_pose_after(double s) const;
+  /// The same of any camera that is mounted on the robot.
+  Eigen::Isometry3d camera_pose(const CameraMount& mount) const;
+  Eigen::Isometry3d camera_pose_after(const CameraMount& mount, double s) const;
 
   /// @name ViSP's interface
   /// The end effector is the camera c, the reference frame the world w. Articular velocities are
-  /// (v, ω, pan rate, tilt rate), articular positions (x, y, θ, pan, tilt). A frame that has no
+  /// (v, ω, pan rate, tilt rate) or (v, ω, v to the left, pan rate, tilt rate), articular positions
+  /// (x, y, θ, pan, tilt). A frame that has no
   /// meaning for a call, a vector of the wrong length and a wrong state are vpRobotExceptions.
   /// @{
   void init() override;
-  /// 6×4, twist of the camera in its own frame.
+  /// A column for each axis, twist of the camera in its own frame.
   void get_eJe(vpMatrix& eJe) override;
-  /// 6×4, twist of the camera with world axes.
+  /// The same with world axes.
   void get_fJe(vpMatrix& fJe) override;
   /// Change of the articular position since the last call, in articular coordinates.
   void getDisplacement(const vpRobot::vpControlFrameType frame, vpColVector& q) override;
@@ -114,10 +123,13 @@ class Robot : public vpRobotSimulator {
 
  private:
   void step(double h);
-  Eigen::Isometry3d camera_at(const Pose2& pose, const HeadAngles& head) const;
+  Eigen::Isometry3d camera_at(const CameraMount& mount, const Pose2& pose,
+                              const HeadAngles& head) const;
+  Eigen::Matrix<double, 6, Eigen::Dynamic> camera_jacobian() const;
 
   RobotParams params_;
   Ground ground_;
+  CameraMount camera_;
   RobotTruth truth_;
   BaseRates base_command_;
   HeadRates head_command_;

@@ -53,7 +53,7 @@ class Scene {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Reads `appearance` and `clutter` of a world file; absent keys have pleasant defaults.
+/// Reads `appearance`, `stripes` and `clutter` of a world file; absent keys have pleasant defaults.
 std::shared_ptr<const Appearance> read_appearance(MapReader& reader, const WorldMap& world);
 
 }  // namespace vigia::sim

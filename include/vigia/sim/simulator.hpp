@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "vigia/core/rig.hpp"
 #include "vigia/sim/camera_errors.hpp"
@@ -18,21 +19,34 @@ namespace vigia::sim {
 /// What a robot's file may leave out.
 RobotParams usual_robot();
 
-/// Everything that a mission's file says of its robot: the robot, its camera and its zoom.
+/// A camera of the robot, and how it turns light into grey levels.
+struct CameraSetup {
+  Camera camera;  ///< what the robot believes; the errors of its calibration on top are the truth
+  ImagingParams imaging;
+};
+
+/// Everything that a mission's file says of its robot: the base, the head and the cameras.
 struct RobotSetup {
   std::string name = "robot";
   RobotParams robot = usual_robot();
-  ZoomCalibration zoom;  ///< what the robot believes; per-look focal error on top is the truth
-  ImagingParams imaging;
+  std::vector<CameraSetup> cameras{CameraSetup{}};  ///< at least one; one with a zoom at most
   double initial_zoom_mm = 8.0;
   std::optional<RangeRingParams> range_ring;
 
-  /// The robot's cameras: one on the head, with the zoom, of id 0.
   Rig rig() const;
+  /// The camera that an attention directs (vigia::directed_camera), or nullptr.
+  const CameraSetup* directed_camera() const;
+  /// The calibration of that camera, which there must be: std::logic_error.
+  ZoomCalibration zoom() const;
 };
 
-/// Reads a robot file; the reader stays the caller's to finish. Throws InputError with the place of
-/// what is wrong.
+/// A robot of one pan-tilt-zoom camera, of id 0.
+RobotSetup pan_tilt_zoom_robot(const RobotParams& robot, const ZoomCalibration& zoom,
+                               const ImagingParams& imaging = {});
+
+/// Reads a robot file, whose cameras stand in the list `cameras` or, of a robot with one
+/// pan-tilt-zoom camera, in `camera` and `zoom`; the reader stays the caller's to finish. Throws
+/// InputError with the place of what is wrong.
 RobotSetup read_robot_setup(MapReader& reader);
 
 /// The simulated world with the robot in it: the room as it truly is, which the disturbances make
@@ -54,12 +68,12 @@ class Simulator {
   /// Puts the robot elsewhere when the time has come, once; says whether it did.
   bool kidnap();
 
-  /// The camera's exposure whose middle is now.
-  std::unique_ptr<imaging::Frame> expose() const;
-  /// The camera's true intrinsics now: calibrated at the zoom's position, scaled by the look's
-  /// focal error, with the errors of the calibration.
-  Intrinsics true_intrinsics() const;
-  /// How late frames are delivered.
+  /// The exposure of a camera whose middle is now.
+  std::unique_ptr<imaging::Frame> expose(CameraId camera = 0) const;
+  /// A camera's true model now: calibrated, at the zoom's position, scaled by the look's focal
+  /// error, with the errors of the calibration.
+  CameraModel true_model(CameraId camera = 0) const;
+  /// How late frames are delivered, beside the cameras' own latency.
   Duration latency() const { return latency_; }
   /// How long a delivered frame takes to process.
   Duration processing() const { return processing_; }
@@ -71,14 +85,22 @@ class Simulator {
   RangeScan scan();
 
  private:
+  struct TrueCamera {
+    CameraSetup setup;
+    CameraErrors errors;
+    CameraMount mount;
+  };
+
+  void disturb(const DisturbanceParams& disturbances, std::uint64_t seed);
   Bystander bystander() const;
-  std::vector<Exposure::Instant> instants(const Intrinsics& intrinsics) const;
+  const TrueCamera& camera_of(CameraId id) const;
+  std::vector<Exposure::Instant> instants(const TrueCamera& camera, const CameraModel& model) const;
 
   RobotSetup setup_;
   WorldMap world_;
   Robot robot_;
   Scene scene_;
-  CameraErrors camera_errors_;
+  std::vector<TrueCamera> cameras_;
   std::optional<MotionBlurParams> motion_blur_;
   std::optional<LightField> light_;
   std::optional<Walkers> walkers_;

@@ -7,14 +7,16 @@
 
 namespace vigia::sim {
 
-/// A motion along an arc: length (m, forward positive) and turn (rad).
+/// A motion along an arc: length (m, forward positive), turn (rad) and, of an omnidirectional base,
+/// the length to its left (m).
 struct ArcMotion {
   double distance = 0.0;
   double turn = 0.0;
+  double side = 0.0;
 };
 
 /// What the base does when its wheels say something else: scale errors that stay, and slips that
-/// begin at random, last some decimetres and cost a share of the way and some heading.
+/// begin at random, last some decimetres and cost a share of the distance and some heading.
 class WheelSlip {
  public:
   WheelSlip(const WheelSlipParams& params, std::uint64_t seed);
