@@ -115,45 +115,43 @@ struct ShadeConstants {
   ProfileTable along_s, along_t;
 };
 
-template <bool kPerspective>
-VIGIA_PIXEL_BODY void shade_rays(const ShadeConstants& k, const std::uint32_t* __restrict tile,
-                                 const float* __restrict x, const float* __restrict y,
-                                 const float* __restrict rz, int count, float* __restrict grey) {
+VIGIA_PIXEL_BODY float shade_ray(const ShadeConstants& c, const std::uint32_t* tile, float x,
+                                 float y, float z) {
   constexpr float kFine = NoiseTile::kSize * 256.0F;  // one tile a metre; coarse: one in 8 m
   constexpr float kFar = 3e4F;
-  const ShadeConstants c = k;
-  for (int i = 0; i < count; ++i) {
-    const float z = kPerspective ? 1.0F : rz[i];
-    const float inverse_depth = c.depth.a * x[i] + c.depth.b * y[i] + c.depth.c * z;
-    const float depth = 1.0F / inverse_depth;
-    float s = (c.s.a * x[i] + c.s.b * y[i] + c.s.c * z) * depth;
-    float t = (c.t.a * x[i] + c.t.b * y[i] + c.t.c * z) * depth;
-    s = s > -kFar ? s : -kFar;
-    s = s < kFar ? s : kFar;
-    t = t > -kFar ? t : -kFar;
-    t = t < kFar ? t : kFar;
-    float near = inverse_depth * c.fine_range;
-    near = near < 1.0F ? near : 1.0F;
-    const auto fs = static_cast<std::int32_t>((s + c.offset_s) * kFine);
-    const auto ft = static_cast<std::int32_t>((t + c.offset_t) * kFine);
-    const float coarse = tile_at(tile, fs >> 3, ft >> 3);
-    const float fine = tile_at(tile, fs, ft);
-    const float paint_s = profile_at(c.along_s, s);
-    const float paint_t = profile_at(c.along_t, t);
-    grey[i] = c.base + c.coarse * coarse + near * (c.fine * fine + paint_s) +
-              (c.steady_t + (1.0F - c.steady_t) * near) * paint_t;
-  }
+  const float inverse_depth = c.depth.a * x + c.depth.b * y + c.depth.c * z;
+  const float depth = 1.0F / inverse_depth;
+  float s = (c.s.a * x + c.s.b * y + c.s.c * z) * depth;
+  float t = (c.t.a * x + c.t.b * y + c.t.c * z) * depth;
+  s = s > -kFar ? s : -kFar;
+  s = s < kFar ? s : kFar;
+  t = t > -kFar ? t : -kFar;
+  t = t < kFar ? t : kFar;
+  float near = inverse_depth * c.fine_range;
+  near = near < 1.0F ? near : 1.0F;
+  const auto fs = static_cast<std::int32_t>((s + c.offset_s) * kFine);
+  const auto ft = static_cast<std::int32_t>((t + c.offset_t) * kFine);
+  const float coarse = tile_at(tile, fs >> 3, ft >> 3);
+  const float fine = tile_at(tile, fs, ft);
+  const float paint_s = profile_at(c.along_s, s);
+  const float paint_t = profile_at(c.along_t, t);
+  return c.base + c.coarse * coarse + near * (c.fine * fine + paint_s) +
+         (c.steady_t + (1.0F - c.steady_t) * near) * paint_t;
 }
 
 VIGIA_PIXEL_LOOP
-void shade_perspective(const ShadeConstants& k, const std::uint32_t* tile, const Rays& rays,
-                       int count, float* grey) {
-  shade_rays<true>(k, tile, rays.x, rays.y, nullptr, count, grey);
+void shade_perspective(const ShadeConstants& k, const std::uint32_t* __restrict tile,
+                       const float* __restrict x, const float* __restrict y, int count,
+                       float* __restrict grey) {
+  const ShadeConstants c = k;
+  for (int i = 0; i < count; ++i) grey[i] = shade_ray(c, tile, x[i], y[i], 1.0F);
 }
 VIGIA_PIXEL_LOOP
-void shade_any(const ShadeConstants& k, const std::uint32_t* tile, const Rays& rays, int count,
-               float* grey) {
-  shade_rays<false>(k, tile, rays.x, rays.y, rays.z, count, grey);
+void shade_any(const ShadeConstants& k, const std::uint32_t* __restrict tile,
+               const float* __restrict x, const float* __restrict y, const float* __restrict z,
+               int count, float* __restrict grey) {
+  const ShadeConstants c = k;
+  for (int i = 0; i < count; ++i) grey[i] = shade_ray(c, tile, x[i], y[i], z[i]);
 }
 
 template <bool kPerspective>
@@ -181,16 +179,16 @@ VIGIA_PIXEL_BODY void nearest_rays(const std::array<Linear, 4>& edges, const Lin
 }
 
 VIGIA_PIXEL_LOOP
-void nearest_perspective(const SurfaceView& view, ViewId id, const Rays& rays, int count,
-                         float* nearest, ViewId* winner) {
-  nearest_rays<true>(view.edges, view.inverse_depth, id, rays.x, rays.y, nullptr, count, nearest,
-                     winner);
+void nearest_perspective(const SurfaceView& view, ViewId id, const float* __restrict x,
+                         const float* __restrict y, int count, float* __restrict nearest,
+                         ViewId* __restrict winner) {
+  nearest_rays<true>(view.edges, view.inverse_depth, id, x, y, nullptr, count, nearest, winner);
 }
 VIGIA_PIXEL_LOOP
-void nearest_any(const SurfaceView& view, ViewId id, const Rays& rays, int count, float* nearest,
-                 ViewId* winner) {
-  nearest_rays<false>(view.edges, view.inverse_depth, id, rays.x, rays.y, rays.z, count, nearest,
-                      winner);
+void nearest_any(const SurfaceView& view, ViewId id, const float* __restrict x,
+                 const float* __restrict y, const float* __restrict z, int count,
+                 float* __restrict nearest, ViewId* __restrict winner) {
+  nearest_rays<false>(view.edges, view.inverse_depth, id, x, y, z, count, nearest, winner);
 }
 
 VIGIA_PIXEL_LOOP
@@ -379,9 +377,9 @@ void shade(const SurfaceView& view, const std::uint32_t* tile, const Rays& rays,
                                  table_of(m.along_s),
                                  table_of(m.along_t)};
   if (rays.z == nullptr)
-    shade_perspective(constants, tile, rays, count, grey);
+    shade_perspective(constants, tile, rays.x, rays.y, count, grey);
   else
-    shade_any(constants, tile, rays, count, grey);
+    shade_any(constants, tile, rays.x, rays.y, rays.z, count, grey);
 }
 
 void evaluate(const Linear& f, const Rays& rays, int count, float* out) {
@@ -394,9 +392,9 @@ void evaluate(const Linear& f, const Rays& rays, int count, float* out) {
 void take_nearest(const SurfaceView& view, ViewId id, const Rays& rays, int count, float* nearest,
                   ViewId* winner) {
   if (rays.z == nullptr)
-    nearest_perspective(view, id, rays, count, nearest, winner);
+    nearest_perspective(view, id, rays.x, rays.y, count, nearest, winner);
   else
-    nearest_any(view, id, rays, count, nearest, winner);
+    nearest_any(view, id, rays.x, rays.y, rays.z, count, nearest, winner);
 }
 
 }  // namespace vigia::sim

@@ -166,7 +166,7 @@ Price price_at(const QuixoteSetting& setting, const std::vector<PatternView>& vi
 
 std::vector<PatternView> near_views(const QuixoteSetting& setting) {
   QuixoteSetting near = setting;
-  near.greatest_distance_m = 2.5;
+  near.max_distance_m = 2.5;
   RandomStream random(kSeed, "near views");
   return random_views(near, 0.1, kSweepViews, random);
 }

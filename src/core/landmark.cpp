@@ -30,10 +30,14 @@ std::optional<double> disc_radius(const Landmark& landmark) {
 }
 
 double extent_radius(const Landmark& landmark) {
-  if (const auto* pattern = std::get_if<PatternShape>(&landmark.shape))
-    return pattern->outer_radius_m + pattern->dot_radius_m;
-  if (const auto* tag = std::get_if<TagShape>(&landmark.shape)) return tag->side_m / std::sqrt(2.0);
-  return std::get<DiscShape>(landmark.shape).radius_m;
+  struct Extent {
+    double operator()(const DiscShape& disc) const { return disc.radius_m; }
+    double operator()(const PatternShape& pattern) const {
+      return pattern.outer_radius_m + pattern.dot_radius_m;
+    }
+    double operator()(const TagShape& tag) const { return tag.side_m / std::sqrt(2.0); }
+  };
+  return std::visit(Extent{}, landmark.shape);
 }
 
 LandmarkMap::LandmarkMap(std::vector<Landmark> landmarks) : landmarks_(std::move(landmarks)) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "vigia/core/overloaded.hpp"
+
 namespace vigia {
 namespace {
 
@@ -9,10 +11,15 @@ constexpr std::size_t kTagCorners = 4;
 
 /// How far the point of that label lies from the landmark's centre, as a share of extent_radius().
 double share_of_extent(int label, const Landmark& landmark) {
-  const auto* pattern = std::get_if<PatternShape>(&landmark.shape);
-  if (pattern == nullptr || label == 0) return 1.0;
-  const double ring = label <= kDotsPerRing ? pattern->outer_radius_m : pattern->inner_radius_m;
-  return ring / extent_radius(landmark);
+  return std::visit(Overloaded{[](const DiscShape&) { return 1.0; },
+                               [&](const PatternShape& pattern) {
+                                 if (label == 0) return 1.0;
+                                 const double ring = label <= kDotsPerRing ? pattern.outer_radius_m
+                                                                           : pattern.inner_radius_m;
+                                 return ring / extent_radius(landmark);
+                               },
+                               [](const TagShape&) { return 1.0; }},
+                    landmark.shape);
 }
 
 /// The centre-point of a pattern where it is seen, else the points' mean.

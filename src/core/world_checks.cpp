@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "vigia/core/angle.hpp"
+#include "vigia/core/overloaded.hpp"
 #include "vigia/core/plane_geometry.hpp"
 
 namespace vigia {
@@ -115,13 +116,17 @@ bool overlap(const Landmark& a, const Landmark& b) {
 
 /// The key of the number that two landmarks share though it must tell them apart, or nothing.
 const char* shared_code(const Landmark& a, const Landmark& b) {
-  const auto* pattern_a = std::get_if<PatternShape>(&a.shape);
-  const auto* pattern_b = std::get_if<PatternShape>(&b.shape);
-  if (pattern_a != nullptr && pattern_b != nullptr && pattern_a->code == pattern_b->code)
-    return "pattern";
-  const auto* tag_a = std::get_if<TagShape>(&a.shape);
-  const auto* tag_b = std::get_if<TagShape>(&b.shape);
-  return tag_a != nullptr && tag_b != nullptr && tag_a->tag == tag_b->tag ? "tag" : nullptr;
+  return std::visit(Overloaded{[](const DiscShape&) -> const char* { return nullptr; },
+                               [&b](const PatternShape& pattern) {
+                                 const auto* other = std::get_if<PatternShape>(&b.shape);
+                                 return other != nullptr && other->code == pattern.code ? "pattern"
+                                                                                        : nullptr;
+                               },
+                               [&b](const TagShape& tag) {
+                                 const auto* other = std::get_if<TagShape>(&b.shape);
+                                 return other != nullptr && other->tag == tag.tag ? "tag" : nullptr;
+                               }},
+                    a.shape);
 }
 
 }  // namespace

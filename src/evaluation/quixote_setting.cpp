@@ -25,8 +25,8 @@ Eigen::Isometry3d looking_at(const Eigen::Vector3d& p_w, const Eigen::Vector3d& 
 /// Distance and φ within the limits that the paper keeps.
 bool will_do(const QuixoteSetting& setting, const Landmark& pattern, const Eigen::Vector3d& p_w) {
   const Eigen::Vector3d view = spherical_view(pattern.wMl.inverse() * p_w).phi_theta_distance;
-  return view.x() >= setting.least_phi && view.x() < 0.5 * kPi &&
-         view.z() >= setting.least_distance_m && view.z() <= setting.greatest_distance_m;
+  return view.x() >= setting.min_phi && view.x() < 0.5 * kPi &&
+         view.z() >= setting.min_distance_m && view.z() <= setting.max_distance_m;
 }
 
 /// Both rings, or the inner one whole: with less the paper's method has nothing to read.

@@ -3,22 +3,48 @@
 #include "vigia/core/noise_params.hpp"
 
 namespace vigia::localization {
+namespace {
 
-void describe(ParamVisitor& v, EkfParams& p) {
-  const char* const from_noise = "that of `localization.noise`";
+constexpr const char* kFromNoise = "that of `localization.noise`";
+
+// What filters of looks have in common, whatever they learn from them.
+
+template <typename Params>
+void describe_noise(ParamVisitor& v, Params& p) {
   v.map("odometry", p.odometry,
-        About("the odometry's noise that this filter assumes").otherwise(from_noise));
+        About("the odometry's noise that this localizer assumes").otherwise(kFromNoise));
   v.map("sensor", p.sensor,
-        About("the head's and the zoom's noise that it assumes").otherwise(from_noise));
+        About("the head's and the zoom's noise that it assumes").otherwise(kFromNoise));
+}
+
+template <typename Params>
+void describe_association(ParamVisitor& v, Params& p) {
   v.number("gate_probability", p.gate_probability, {0.5, 0.999999},
-           "share of right measurements that pass the gate");
+           "share of right measurements that pass a gate");
   v.number("ambiguity_ratio", p.ambiguity_ratio, {1.0, 1e9},
            "how many times likelier than the next the best landmark must be");
+}
+
+template <typename Params>
+void describe_loss(ParamVisitor& v, Params& p) {
+  v.number("history_s", p.history_s, {0.0, 60.0}, "how late an observation may come");
+  v.number("lost_sigma_m", p.lost_sigma_m, {0.01, 100.0},
+           "lost while √λ_max of the position covariance is above this");
+  v.integer("lost_rejections", p.lost_rejections, {1, 100000},
+            "lost after so many unexplained images in a row, …");
+  v.integer("lost_looks", p.lost_looks, {1, 1000}, "… in at least so many looks");
+}
+
+}  // namespace
+
+void describe(ParamVisitor& v, EkfParams& p) {
+  describe_noise(v, p);
+  describe_association(v, p);
   v.number("centre_floor_px", p.centre_floor_px, {0.0, 10.0},
            About("σ of what the model of a disc's centre, or of a point, leaves out")
-               .otherwise(from_noise));
+               .otherwise(kFromNoise));
   v.number("size_floor", p.size_floor, {0.0, 1.0},
-           About("relative σ of what the model of a disc's size leaves out").otherwise(from_noise));
+           About("relative σ of what the model of a disc's size leaves out").otherwise(kFromNoise));
   v.boolean("use_size", p.use_size,
             "measure the disc's apparent size; `false`: its direction only, as Armingol (the size "
             "still tells discs apart)");
@@ -27,12 +53,7 @@ void describe(ParamVisitor& v, EkfParams& p) {
             "images of a look that are linearised anew at each update, at most");
   v.number("converged", p.converged, {1e-12, 1.0},
            About("the linearisation ends with a step of less").in("m, rad"));
-  v.number("history_s", p.history_s, {0.0, 60.0}, "how late an observation may come");
-  v.number("lost_sigma_m", p.lost_sigma_m, {0.01, 100.0},
-           "lost while √λ_max of the position covariance is above this");
-  v.integer("lost_rejections", p.lost_rejections, {1, 100000},
-            "lost after so many unexplained frames in a row, …");
-  v.integer("lost_looks", p.lost_looks, {1, 1000}, "… in at least so many looks");
+  describe_loss(v, p);
   v.integer("nis_looks", p.nis_looks, {1, 1000},
             "lost when the NIS of so many looks' first frames …");
   v.number("nis_probability", p.nis_probability, {1e-12, 0.5},
@@ -40,23 +61,11 @@ void describe(ParamVisitor& v, EkfParams& p) {
 }
 
 void describe(ParamVisitor& v, BearingOnlyParams& p) {
-  const char* const from_noise = "that of `localization.noise`";
-  v.map("odometry", p.odometry,
-        About("the odometry's noise that this localizer assumes").otherwise(from_noise));
-  v.map("sensor", p.sensor,
-        About("the head's and the zoom's noise that it assumes").otherwise(from_noise));
+  describe_noise(v, p);
   v.angle("bearing_floor_deg", p.bearing_floor, {0.0, 10.0},
           "σ of what a bearing leaves out, white per image");
-  v.number("gate_probability", p.gate_probability, {0.5, 0.999999},
-           "share of right measurements that pass a gate");
-  v.number("ambiguity_ratio", p.ambiguity_ratio, {1.0, 1e9},
-           "how many times likelier than the next the best landmark must be");
-  v.number("history_s", p.history_s, {0.0, 60.0}, "how late an observation may come");
-  v.number("lost_sigma_m", p.lost_sigma_m, {0.01, 100.0},
-           "lost while √λ_max of the position covariance is above this");
-  v.integer("lost_rejections", p.lost_rejections, {1, 100000},
-            "lost after so many unexplained images in a row, …");
-  v.integer("lost_looks", p.lost_looks, {1, 1000}, "… in at least so many looks");
+  describe_association(v, p);
+  describe_loss(v, p);
   v.integer("search_looks", p.search_looks, {3, 100},
             "looks whose bearings a lost robot remembers");
   v.integer("min_looks", p.min_looks, {3, bound_of("search_looks", p.search_looks)},

@@ -81,21 +81,24 @@ void compress(const Eigen::Matrix<double, 6, 6>& A, const Eigen::Matrix<double, 
   measurement.y = inverse_root.asDiagonal() * factor.matrixL().solve(permuted);
 }
 
-std::vector<LandmarkPoint> corners(const TagShape& tag) {
-  const double h = 0.5 * tag.side_m;
-  return {{0, {-h, -h}, 0.0}, {1, {h, -h}, 0.0}, {2, {h, h}, 0.0}, {3, {-h, h}, 0.0}};
-}
+struct PointsOf {
+  std::vector<LandmarkPoint> operator()(const DiscShape& /*disc*/) const { return {}; }
+  std::vector<LandmarkPoint> operator()(const PatternShape& pattern) const {
+    std::vector<LandmarkPoint> points;
+    for (const PatternDot& dot : pattern_dots(pattern))
+      points.push_back({dot.label, dot.centre_l, dot.radius_m});
+    return points;
+  }
+  std::vector<LandmarkPoint> operator()(const TagShape& tag) const {
+    const double h = 0.5 * tag.side_m;
+    return {{0, {-h, -h}, 0.0}, {1, {h, -h}, 0.0}, {2, {h, h}, 0.0}, {3, {-h, h}, 0.0}};
+  }
+};
 
 }  // namespace
 
 std::vector<LandmarkPoint> landmark_points(const Landmark& landmark) {
-  if (const auto* tag = std::get_if<TagShape>(&landmark.shape)) return corners(*tag);
-  std::vector<LandmarkPoint> points;
-  if (const auto* pattern = std::get_if<PatternShape>(&landmark.shape)) {
-    for (const PatternDot& dot : pattern_dots(*pattern))
-      points.push_back({dot.label, dot.centre_l, dot.radius_m});
-  }
-  return points;
+  return std::visit(PointsOf{}, landmark.shape);
 }
 
 std::vector<SeenPoint> seen_points(const Landmark& landmark, const PointsObservation& observation,

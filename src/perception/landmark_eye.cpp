@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "vigia/core/overloaded.hpp"
 #include "vigia/localization/disc_model.hpp"
 #include "vigia/localization/points_model.hpp"
 #include "vigia/perception/landmark_image.hpp"
@@ -147,9 +148,11 @@ std::optional<tracking::EllipsePrediction> LandmarkEye::predict(const Shot& shot
 }
 
 tracking::PointTracker* LandmarkEye::point_tracker(const Landmark& landmark) const {
-  if (std::holds_alternative<PatternShape>(landmark.shape)) return patterns_.get();
-  if (std::holds_alternative<TagShape>(landmark.shape)) return tags_.get();
-  return nullptr;
+  using Tracker = tracking::PointTracker*;
+  return std::visit(Overloaded{[](const DiscShape&) -> Tracker { return nullptr; },
+                               [this](const PatternShape&) -> Tracker { return patterns_.get(); },
+                               [this](const TagShape&) -> Tracker { return tags_.get(); }},
+                    landmark.shape);
 }
 
 tracking::EllipseFeature LandmarkEye::find_disc(

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "vigia/core/error.hpp"
+#include "vigia/core/overloaded.hpp"
 #include "vigia/imaging/tag_bitmap.hpp"
 
 namespace vigia::report {
@@ -75,7 +76,11 @@ struct Words {
 double sheet_half_width(const LandmarkShape& shape) {
   Landmark landmark;
   landmark.shape = shape;
-  return half_width(landmark) * (std::holds_alternative<DiscShape>(shape) ? kPlateFactor : 1.0);
+  const double plate = std::visit(
+      Overloaded{[](const DiscShape&) { return kPlateFactor; },
+                 [](const PatternShape&) { return 1.0; }, [](const TagShape&) { return 1.0; }},
+      shape);
+  return half_width(landmark) * plate;
 }
 
 /// Draws in metres from the landmark's centre, x right, y down.

@@ -17,10 +17,10 @@ struct QuixoteSetting {
   double pattern_height_m = 2.15;
   double camera_height_m = 1.1;
   double wall_distance_m = 0.4;  ///< that the camera keeps
-  double least_distance_m = 1.25;
-  double greatest_distance_m = 8.0;
-  double least_phi = 0.4363323129985824;  ///< 25°
-  double centring_sigma_px = 0.5;         ///< of the servo, per axis
+  double min_distance_m = 1.25;
+  double max_distance_m = 8.0;
+  double min_phi = 0.4363323129985824;  ///< 25°
+  double centring_sigma_px = 0.5;       ///< of the servo, per axis
 };
 
 LandmarkMap quixote_patterns(const QuixoteSetting& setting);
