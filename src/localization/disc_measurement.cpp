@@ -149,7 +149,8 @@ std::optional<Linearised<3>> linearise(const MeasurementModel& model, const Disc
   seen.H << image->dz_dpose, image->dz_dbias;
   seen.y = match.z - image->z;
   seen.R = match.R + reading * reading * J * J.transpose();
-  if (!model.has_look_biases(match.shot.camera)) seen.H.rightCols<3>().setZero();
+  const Eigen::Vector3d shared = model.look_biases(match.shot.camera).matrix();
+  seen.H.rightCols<3>() = seen.H.rightCols<3>().eval() * shared.asDiagonal();
   return seen;
 }
 

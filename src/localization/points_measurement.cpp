@@ -91,7 +91,8 @@ std::optional<Linearised<6>> linearise(const MeasurementModel& model, const Poin
   seen.rank = std::min(kMaxRank, static_cast<int>(measured));
   seen.scatter = image->chi2 - image->y.squaredNorm();
   seen.scatter_dof = 2 * static_cast<int>(match.points.size()) - seen.rank;
-  if (!model.has_look_biases(match.shot.camera)) seen.H.rightCols<3>().setZero();
+  const Eigen::Vector3d shared = model.look_biases(match.shot.camera).matrix();
+  seen.H.rightCols<3>() = seen.H.rightCols<3>().eval() * shared.asDiagonal();
   return seen;
 }
 

@@ -48,6 +48,7 @@ struct ZoomSample {
 /// increasing with zoom_mm. Of one sample: a lens that does not zoom.
 class ZoomCalibration {
  public:
+  /// One sample: a lens of 700 px.
   ZoomCalibration() = default;
   /// At least one sample. Throws std::invalid_argument unless zoom_mm and px strictly increase.
   ZoomCalibration(int width, int height, double u0, double v0, std::vector<ZoomSample> samples);
@@ -62,7 +63,7 @@ class ZoomCalibration {
 
  private:
   Intrinsics base_;
-  std::vector<ZoomSample> samples_;
+  std::vector<ZoomSample> samples_{ZoomSample{}};
 };
 
 }  // namespace vigia
