@@ -106,6 +106,8 @@ bool ParamReader::given(const char* key, const Describe& describe_keys) {
   return true;
 }
 
+// Where it does not hold, the keys are visited to be noted, and the fields stay as they are: what
+// else a description does to its struct must hang on the condition as well.
 void ParamReader::where(bool holds, const std::string& words, const Describe& describe_keys) {
   const std::string* const before = absent_;
   if (!holds && before == nullptr) absent_ = &words;

@@ -49,7 +49,7 @@ struct ZoomSample {
 class ZoomCalibration {
  public:
   /// One sample: a lens of 700 px.
-  ZoomCalibration() = default;
+  ZoomCalibration();
   /// At least one sample. Throws std::invalid_argument unless zoom_mm and px strictly increase.
   ZoomCalibration(int width, int height, double u0, double v0, std::vector<ZoomSample> samples);
 
@@ -63,7 +63,7 @@ class ZoomCalibration {
 
  private:
   Intrinsics base_;
-  std::vector<ZoomSample> samples_{ZoomSample{}};
+  std::vector<ZoomSample> samples_;
 };
 
 }  // namespace vigia
