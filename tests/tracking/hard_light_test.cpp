@@ -74,9 +74,6 @@ TEST_P(HardLights, CentresAreOffAsTheirCovarianceSays) {
 INSTANTIATE_TEST_SUITE_P(All, HardLights,
                          ::testing::Values(HardLight{"plain"}, HardLight{"slope_10", 10.0},
                                            HardLight{"slope_24", 24.0}, HardLight{"slope_40", 40.0},
-                                           HardLight{"cover_2_px", 0.0, 2.0},
-                                           HardLight{"cover_4_px_slope_10", 10.0, 4.0},
-                                           HardLight{"dark_cover_3_px", 0.0, 3.0, 20.0},
                                            HardLight{"clipped_ground", 0.0, 1.4}),
                          [](const auto& test) { return test.param.name; });
 
