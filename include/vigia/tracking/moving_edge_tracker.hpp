@@ -11,7 +11,7 @@ namespace vigia::tracking {
 
 struct MovingEdgeTrackerParameters {
   unsigned range_px = 12;       ///< how far along the normal each edge site searches
-  double sample_step_px = 4.0;  ///< distance of the sites along the outline
+  double sample_step_px = 3.0;  ///< distance of the sites along the outline
   unsigned mask_size = 5;       ///< of the edge operator, px
   double threshold = 1500.0;    ///< ViSP's likelihood threshold of an edge
   /// Share of the sites that must hold on to the outline, and of the outline that must be a step of
