@@ -116,6 +116,7 @@ ZoomCalibration describe_zoom(ParamVisitor& v, const Sensor& sensor, double& ini
          [&] { describe_sample(v, sensor, table); });
   v.require(table.size() >= 2, "table",
             "a zoom table needs at least two rows {zoom_mm, focal_px, kdu}");
+  if (table.empty()) return {};  // only where the keys are noted, not read
   initial_mm = table.front().zoom_mm;
   v.number(
       "initial_mm", initial_mm,

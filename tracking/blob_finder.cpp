@@ -98,8 +98,7 @@ void BlobFinder::scan_row(int v) {
 
 void BlobFinder::consider(const Chord& chord) {
   if (chord.last - chord.first < parameters_.min_axis_px) return;
-  Seed seed;
-  if (make_seed(chord, seed)) fill(seed);
+  if (const auto seed = seed_of(chord)) fill(*seed);
 }
 
 // How many steps of (du, dv) stay below the threshold; one lighter pixel alone is noise.
@@ -117,58 +116,74 @@ int BlobFinder::reach(int u, int v, int du, int dv, int threshold, int limit) co
   return steps;
 }
 
-bool BlobFinder::make_seed(const Chord& chord, Seed& seed) const {
+// The levels within and beside the chord, and the threshold half way between. Nothing where there
+// is no contrast.
+std::optional<BlobFinder::Seed> BlobFinder::seed_levels(const Chord& chord) const {
   const int length = chord.last - chord.first + 1;
-  const int u = (chord.first + chord.last) / 2;
-  const int v = chord.v;
+  Seed seed;
+  seed.u = (chord.first + chord.last) / 2;
+  seed.v = chord.v;
   std::array<double, 5> samples{};
   for (int k = 0; k < 5; ++k) {
-    const int at_u = u + (k - 2) * std::max(1, length / 8);
-    samples[static_cast<std::size_t>(k)] = at(std::clamp(at_u, window_.u, window_.right() - 1), v);
+    const int at_u = seed.u + (k - 2) * std::max(1, length / 8);
+    samples[static_cast<std::size_t>(k)] =
+        at(std::clamp(at_u, window_.u, window_.right() - 1), seed.v);
   }
   seed.disc = median_of_five(samples);
   const auto level = [&](int at_u) {
     const int inner = std::clamp(at_u, window_.u + 1, window_.right() - 2);
-    return (at(inner - 1, v) + at(inner, v) + at(inner + 1, v)) / 3.0;
+    return (at(inner - 1, seed.v) + at(inner, seed.v) + at(inner + 1, seed.v)) / 3.0;
   };
   const double left = level(chord.first - kGroundDistance);
   const double right = level(chord.last + kGroundDistance);
-  if (chord.first == window_.u && chord.last == window_.right() - 1) return false;
+  if (chord.first == window_.u && chord.last == window_.right() - 1) return std::nullopt;
   if (chord.first == window_.u)
     seed.ground = right;
   else if (chord.last == window_.right() - 1)
     seed.ground = left;
   else
     seed.ground = std::min(left, right);
-  if (seed.ground - seed.disc < parameters_.min_contrast) return false;
+  if (seed.ground - seed.disc < parameters_.min_contrast) return std::nullopt;
   seed.threshold = static_cast<int>(0.5 * (seed.disc + seed.ground));
-  seed.u = u;
-  seed.v = v;
-  if (at(u, v) >= seed.threshold) return false;
-  const std::uint32_t taker =
-      taken_[static_cast<std::size_t>(v) * image_->getWidth() + static_cast<std::size_t>(u)];
-  if (taker >= first_fill_ &&
-      std::abs(thresholds_[taker - first_fill_] - seed.threshold) <= kSameThreshold)
-    return false;
+  return seed;
+}
+
+// Whether a fill of about the same threshold has taken the seed's pixel.
+bool BlobFinder::already_filled(const Seed& seed) const {
+  const std::uint32_t taker = taken_[static_cast<std::size_t>(seed.v) * image_->getWidth() +
+                                     static_cast<std::size_t>(seed.u)];
+  return taker >= first_fill_ &&
+         std::abs(thresholds_[taker - first_fill_] - seed.threshold) <= kSameThreshold;
+}
+
+std::optional<BlobFinder::Seed> BlobFinder::seed_of(const Chord& chord) const {
+  auto seed = seed_levels(chord);
+  if (!seed || at(seed->u, seed->v) >= seed->threshold || already_filled(*seed))
+    return std::nullopt;
 
   // The crossing chord, then the chord through its middle.
+  const int length = chord.last - chord.first + 1;
+  const int u = seed->u;
+  const int v = seed->v;
   const int tallest = static_cast<int>(length / parameters_.min_axis_ratio) * 2 + 8;
-  const int up = reach(u, v, 0, -1, seed.threshold, tallest);
-  const int down = reach(u, v, 0, 1, seed.threshold, tallest);
+  const int up = reach(u, v, 0, -1, seed->threshold, tallest);
+  const int down = reach(u, v, 0, 1, seed->threshold, tallest);
   const int height = up + down + 1;
-  if (up == tallest || down == tallest || height < 1.6 * parameters_.min_axis_px) return false;
+  if (up == tallest || down == tallest || height < 1.6 * parameters_.min_axis_px)
+    return std::nullopt;
   const int middle = v + (down - up) / 2;
   const int widest = static_cast<int>(height / parameters_.min_axis_ratio) * 2 + 8;
-  const int before = reach(u, middle, -1, 0, seed.threshold, widest);
-  const int behind = reach(u, middle, 1, 0, seed.threshold, widest);
+  const int before = reach(u, middle, -1, 0, seed->threshold, widest);
+  const int behind = reach(u, middle, 1, 0, seed->threshold, widest);
   const int width = before + behind + 1;
-  if (before == widest || behind == widest || width < 1.6 * parameters_.min_axis_px) return false;
+  if (before == widest || behind == widest || width < 1.6 * parameters_.min_axis_px)
+    return std::nullopt;
   const double flat = 0.7 * parameters_.min_axis_ratio;
-  if (width < flat * height || height < flat * width) return false;
+  if (width < flat * height || height < flat * width) return std::nullopt;
 
   const Column column{u, middle, height};
-  if (std::min(width, height) >= kProfiled && !chords_like_ellipse(column, width, seed.threshold))
-    return false;
+  if (std::min(width, height) >= kProfiled && !chords_like_ellipse(column, width, seed->threshold))
+    return std::nullopt;
 
   // The rectangle round a slanting ellipse is larger than its upright chords by up to this much.
   const double ratio = parameters_.min_axis_ratio;
@@ -176,9 +191,9 @@ bool BlobFinder::make_seed(const Chord& chord, Seed& seed) const {
   const int half_width = static_cast<int>(slant * 0.6 * width * 1.15) + 4;
   const int half_height = static_cast<int>(slant * 0.6 * height * 1.15) + 4;
   const int u_middle = u + (behind - before) / 2;
-  seed.limit = {u_middle - half_width, middle - half_height, 2 * half_width + 1,
-                2 * half_height + 1};
-  return true;
+  seed->limit = {u_middle - half_width, middle - half_height, 2 * half_width + 1,
+                 2 * half_height + 1};
+  return seed;
 }
 
 // Along the rows of an ellipse the squared chord is a parabola, whatever its slant; tested on four
@@ -237,7 +252,8 @@ bool BlobFinder::add_touching(int first, int last, int v, const Seed& seed, cons
   return true;
 }
 
-void BlobFinder::fill(const Seed& seed) {
+// Takes the dark region round the seed into runs_. False when it leaves the limit.
+bool BlobFinder::flood(const Seed& seed) {
   open_.clear();
   runs_.clear();
   thresholds_.push_back(seed.threshold);
@@ -257,9 +273,16 @@ void BlobFinder::fill(const Seed& seed) {
     }
   }
   ++fills_;
-  if (!within) return;
+  return within;
+}
 
-  // Moments about the seed; the sum of squares of a run in closed form.
+void BlobFinder::fill(const Seed& seed) {
+  if (!flood(seed)) return;
+  if (auto blob = describe(seed)) blobs_.push_back(std::move(*blob));
+}
+
+// Moments about the seed; the sum of squares of a run in closed form. Nothing for a line.
+std::optional<Blob> BlobFinder::describe(const Seed& seed) const {
   double m00 = 0.0;
   double m10 = 0.0;
   double m01 = 0.0;
@@ -300,22 +323,27 @@ void BlobFinder::fill(const Seed& seed) {
       m11 / m00 - mean_u * mean_v, m02 / m00 - mean_v * mean_v;
   blob.ellipse.sigma *= 4.0;
   const double determinant = blob.ellipse.sigma.determinant();
-  if (determinant <= 0.0) return;
+  if (determinant <= 0.0) return std::nullopt;
   blob.fill = blob.area / (kPi * std::sqrt(determinant));
+  blob.solidity = solidity_of(blob);
+  // Where the area is wrong already, the outline needs no look.
+  blob.outline = std::abs(blob.fill - 1.0) < 0.2 ? outline_distance(blob.ellipse) : 1e9;
+  if (blob.cut || parameters_.keep_outlines) blob.arc = visible_arc();
+  return blob;
+}
 
-  std::vector<std::pair<int, int>> span(static_cast<std::size_t>(blob.box.height), {right, left});
+double BlobFinder::solidity_of(const Blob& blob) const {
+  const imaging::Window& box = blob.box;
+  std::vector<std::pair<int, int>> span(static_cast<std::size_t>(box.height),
+                                        {box.right() - 1, box.u});
   for (const Run& run : runs_) {
-    auto& [first, last] = span[static_cast<std::size_t>(run.v - top)];
+    auto& [first, last] = span[static_cast<std::size_t>(run.v - box.v)];
     first = std::min(first, run.first);
     last = std::max(last, run.last);
   }
   double spanned = 0.0;
   for (const auto& [first, last] : span) spanned += last - first + 1;
-  blob.solidity = blob.area / spanned;
-  // Where the area is wrong already, the outline needs no look.
-  blob.outline = std::abs(blob.fill - 1.0) < 0.2 ? outline_distance(blob.ellipse) : 1e9;
-  if (blob.cut) blob.arc = visible_arc();
-  blobs_.push_back(blob);
+  return blob.area / spanned;
 }
 
 // The runs' ends that are not the window's sides; above and below, the outline is cut anyway.

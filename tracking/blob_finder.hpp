@@ -3,6 +3,7 @@
 #include "ellipse_shape.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -15,15 +16,16 @@ namespace vigia::tracking {
 /// A connected dark region and its moments.
 struct Blob {
   imaging::Window box;
-  double area = 0.0;                 ///< px
-  EllipseShape ellipse;              ///< the ellipse of the same second moments
-  double fill = 0.0;                 ///< area over that ellipse's area; 1 for a solid ellipse
-  double solidity = 0.0;             ///< area over the area between each row's first and last pixel
-  double outline = 0.0;              ///< rms distance of the runs' ends from the ellipse, px
-  double disc = 0.0;                 ///< grey level inside, near the seed
-  double ground = 0.0;               ///< grey level beside it, near the seed
-  bool cut = false;                  ///< reaches the window's edge
-  std::vector<Eigen::Vector2d> arc;  ///< of a cut blob: points of the outline that is seen
+  double area = 0.0;      ///< px
+  EllipseShape ellipse;   ///< the ellipse of the same second moments
+  double fill = 0.0;      ///< area over that ellipse's area; 1 for a solid ellipse
+  double solidity = 0.0;  ///< area over the area between each row's first and last pixel
+  double outline = 0.0;   ///< rms distance of the runs' ends from the ellipse, px
+  double disc = 0.0;      ///< grey level inside, near the seed
+  double ground = 0.0;    ///< grey level beside it, near the seed
+  bool cut = false;       ///< reaches the window's edge
+  /// Points of the outline that is seen: of a cut blob, and where all outlines are kept.
+  std::vector<Eigen::Vector2d> arc;
 };
 
 struct BlobFinderParameters {
@@ -31,6 +33,7 @@ struct BlobFinderParameters {
   double min_axis_ratio = 0.3;
   double min_contrast = 20.0;  ///< grey levels
   int row_step = 4;            ///< rows between scanned rows, at most twice min_axis_px
+  bool keep_outlines = false;  ///< whether blobs that aren't cut have their outline, too
 };
 
 /// Finds compact dark blobs on lighter ground: falling and rising edges along every few rows give
@@ -77,10 +80,15 @@ class BlobFinder {
   unsigned char at(int u, int v) const { return (*image_)[static_cast<unsigned>(v)][u]; }
   void scan_row(int v);
   void consider(const Chord& chord);
-  bool make_seed(const Chord& chord, Seed& seed) const;
+  std::optional<Seed> seed_of(const Chord& chord) const;
+  std::optional<Seed> seed_levels(const Chord& chord) const;
+  bool already_filled(const Seed& seed) const;
   int reach(int u, int v, int du, int dv, int threshold, int limit) const;
   bool chords_like_ellipse(const Column& column, int width, int threshold) const;
   void fill(const Seed& seed);
+  bool flood(const Seed& seed);
+  std::optional<Blob> describe(const Seed& seed) const;
+  double solidity_of(const Blob& blob) const;
   bool add_run(int u, int v, const Seed& seed, const Run& from);
   bool add_touching(int first, int last, int v, const Seed& seed, const Run& from);
   std::vector<Eigen::Vector2d> visible_arc() const;

@@ -7,22 +7,32 @@
 namespace vigia::tracking {
 namespace {
 
-constexpr double kFloor = 0.025;         // σ of inks and light that no noise explains
-constexpr double kBlackBelow = 0.2;      // of the paper's reflectance, the black point's being 0
-constexpr double kSecondBelow = 0.75;    // of the strongest channel: the next one
-constexpr double kGreyWithin = 0.15;     // spread of the black point's channels
-constexpr double kDarkestBlack = 0.5;    // its reflectance at most
-constexpr double kTwinTolerance = 0.12;  // between the rings' dots of one place
+// Of the most absorbed channel, like all ratios here.
+constexpr double kBlackAbove = 0.78;     // the least absorbed channel of black
+constexpr double kGreyest = 0.75;        // the same of the black point, tinted by light
+constexpr double kFloor = 0.03;          // σ of inks and colour interpolation
+constexpr double kTwinTolerance = 0.20;  // between the rings' dots of one place
 constexpr double kTwinSigmas = 4.0;
+// Of the paper's light.
+constexpr double kMinStrength = 0.12;  // of the most absorbed channel
+// Against the median of the dots of one ring.
+constexpr double kWeakestBlack = 0.85;   // the black point
+constexpr double kWeakestCentre = 0.80;  // the centre-point, which blur weakens less
 
-struct Reflectance {
+/// What a dot takes of the paper's light.
+struct Absorbance {
   Eigen::Array3d value = Eigen::Array3d::Zero();
   Eigen::Array3d variance = Eigen::Array3d::Zero();
+
+  double strength() const { return value.maxCoeff(); }
+  double greyness() const { return value.minCoeff() / std::max(strength(), 1e-6); }
 };
 
-Reflectance reflectance_of(const ColourLevels& levels) {
+using Ring = std::array<Absorbance, kDotsPerRing>;
+
+Absorbance absorbance_of(const ColourLevels& levels) {
   const Eigen::Array3d ground = levels.ground.max(1.0);
-  return {levels.dot / ground, (levels.dot_sigma / ground).square()};
+  return {1.0 - levels.dot / ground, (levels.dot_sigma / ground).square()};
 }
 
 double normal_share(double t) {
@@ -34,105 +44,143 @@ struct Decision {
   double probability = 0.0;
 };
 
-/// The colour of a dot, given the black point's reflectance.
-Decision decide(const Reflectance& dot, const Reflectance& black) {
-  const Eigen::Array3d scale = (1.0 - black.value).max(0.1);
-  const Eigen::Array3d depth = (dot.value - black.value) / scale;
-  const Eigen::Array3d variance =
-      (dot.variance + black.variance) / scale.square() + kFloor * kFloor;
-  Eigen::Index first = 0;
-  const double strongest = depth.maxCoeff(&first);
-  const double over_black = (strongest - kBlackBelow) / std::sqrt(variance[first]);
-  if (over_black < 0.0) {
-    // Each channel is below the threshold.
-    double probability = 1.0;
-    for (int c = 0; c < 3; ++c)
-      probability *= normal_share((kBlackBelow - depth[c]) / std::sqrt(variance[c]));
-    return {DotColour::black, probability};
-  }
-  double probability = normal_share(over_black);
-  for (int c = 0; c < 3; ++c) {
-    if (c == first) continue;
-    const double margin = kSecondBelow * strongest - depth[c];
-    const double sigma = std::sqrt(kSecondBelow * kSecondBelow * variance[first] + variance[c]);
-    probability *= normal_share(margin / sigma);
-  }
-  return {static_cast<DotColour>(first + 1), probability};
+/// The tint of the black point: what its channels absorb, the most absorbed one 1.
+Eigen::Array3d tint_of(const Absorbance& black) {
+  return (black.value / std::max(black.strength(), 1e-6)).max(0.5);
 }
 
-bool agree(const Reflectance& a, const Reflectance& b) {
-  const Eigen::Array3d limit = kTwinTolerance + kTwinSigmas * (a.variance + b.variance).sqrt();
-  return ((a.value - b.value).abs() < limit).all();
+Absorbance balanced(const Absorbance& dot, const Eigen::Array3d& tint) {
+  return {dot.value / tint, dot.variance / tint.square()};
 }
 
-Reflectance combine(const Reflectance& a, const Reflectance& b) {
+/// The colour of a dot in balanced light.
+Decision decide(const Absorbance& dot) {
+  Eigen::Index most = 0;
+  Eigen::Index least = 0;
+  const double strength = dot.value.maxCoeff(&most);
+  if (strength < kMinStrength) return {};
+  const Eigen::Array3d ratio = dot.value / strength;
+  ratio.minCoeff(&least);
+  const Eigen::Array3d variance = dot.variance / (strength * strength) + kFloor * kFloor;
+  const auto probability_of = [&](double margin, double var) {
+    return normal_share(margin / std::sqrt(var));
+  };
+  const double least_ratio = ratio[least];
+  const double var = variance[least] + least_ratio * least_ratio * variance[most];
+  if (least_ratio > kBlackAbove)
+    return {DotColour::black, probability_of(least_ratio - kBlackAbove, var)};
+  const Eigen::Index middle = 3 - least - most;
+  return {static_cast<DotColour>(least + 1),
+          probability_of(kBlackAbove - least_ratio, var) *
+              probability_of(ratio[middle] - least_ratio, variance[middle] + variance[least])};
+}
+
+bool agree(const Absorbance& a, const Absorbance& b) {
+  const double strength = std::max({a.strength(), b.strength(), 1e-6});
+  const Eigen::Array3d limit =
+      kTwinTolerance + kTwinSigmas * (a.variance + b.variance).sqrt() / strength;
+  return ((a.value - b.value).abs() / strength < limit).all();
+}
+
+Absorbance combine(const Absorbance& a, const Absorbance& b) {
   constexpr double kTiny = 1e-8;
   const Eigen::Array3d wa = 1.0 / (a.variance + kTiny);
   const Eigen::Array3d wb = 1.0 / (b.variance + kTiny);
   return {(wa * a.value + wb * b.value) / (wa + wb), 1.0 / (wa + wb)};
 }
 
-/// The ring's places, read from either ring or both.
-ReadStatus read_ring(const DotLevels& dots, std::array<Reflectance, kDotsPerRing>& ring) {
+struct RingReading {
   ReadStatus status = ReadStatus::read;
-  for (std::size_t i = 0; i < ring.size(); ++i) {
+  Ring places;
+};
+
+/// The ring's places, read from either ring or both.
+RingReading read_ring(const DotLevels& dots) {
+  RingReading ring;
+  for (std::size_t i = 0; i < kDotsPerRing; ++i) {
     const auto& outer = dots[1 + i];
     const auto& inner = dots[1 + kDotsPerRing + i];
     if (!outer && !inner) {
-      status = ReadStatus::incomplete;
+      ring.status = ReadStatus::incomplete;
       continue;
     }
-    ring[i] = reflectance_of(outer ? *outer : *inner);
+    ring.places[i] = absorbance_of(outer ? *outer : *inner);
     if (!outer || !inner) continue;
-    const Reflectance twin = reflectance_of(*inner);
-    if (!agree(ring[i], twin)) return ReadStatus::doubtful;
-    ring[i] = combine(ring[i], twin);
+    const Absorbance twin = absorbance_of(*inner);
+    if (!agree(ring.places[i], twin)) {
+      ring.status = ReadStatus::doubtful;
+      return ring;
+    }
+    ring.places[i] = combine(ring.places[i], twin);
   }
-  return status;
+  return ring;
 }
 
-bool is_grey_and_dark(const Reflectance& black) {
-  return black.value.maxCoeff() - black.value.minCoeff() < kGreyWithin &&
-         black.value.maxCoeff() < kDarkestBlack;
+double median_strength(const Ring& ring) {
+  std::array<double, kDotsPerRing> strengths{};
+  std::transform(ring.begin(), ring.end(), strengths.begin(),
+                 [](const Absorbance& dot) { return dot.strength(); });
+  std::nth_element(strengths.begin(), strengths.begin() + kDotsPerRing / 2, strengths.end());
+  return strengths[kDotsPerRing / 2];
+}
+
+/// The place of the black point, the greyest; nothing when that isn't black.
+std::optional<std::size_t> black_place(const Ring& ring) {
+  const auto greyest = std::max_element(
+      ring.begin(), ring.end(),
+      [](const Absorbance& a, const Absorbance& b) { return a.greyness() < b.greyness(); });
+  if (greyest->greyness() < kGreyest || greyest->strength() < kWeakestBlack * median_strength(ring))
+    return std::nullopt;
+  return static_cast<std::size_t>(greyest - ring.begin());
+}
+
+struct Decoding {
+  std::optional<PatternColours> colours;  ///< none when a second place is black
+  double probability = 1.0;
+};
+
+Decoding decide_all(const Ring& ring, std::size_t first, const Absorbance& centre) {
+  const Eigen::Array3d tint = tint_of(ring[first]);
+  Decoding decoding;
+  const Decision middle = decide(balanced(centre, tint));
+  PatternColours colours;
+  colours.centre = middle.colour;
+  decoding.probability = middle.probability;
+  for (std::size_t i = 1; i < ring.size(); ++i) {
+    const Decision decision = decide(balanced(ring[(first + i) % ring.size()], tint));
+    if (decision.colour == DotColour::black) return decoding;
+    colours.ring[i] = decision.colour;
+    decoding.probability *= decision.probability;
+  }
+  decoding.colours = colours;
+  return decoding;
 }
 
 }  // namespace
 
 CodeReading read_code(const DotLevels& dots, double min_confidence) {
   CodeReading reading;
-  std::array<Reflectance, kDotsPerRing> ring;
-  reading.status = read_ring(dots, ring);
+  const RingReading ring = read_ring(dots);
+  reading.status = ring.status;
   if (reading.status != ReadStatus::read) return reading;
   reading.status = dots[0] ? ReadStatus::doubtful : ReadStatus::incomplete;
   if (!dots[0]) return reading;
 
-  const auto darkest = std::min_element(ring.begin(), ring.end(), [](const auto& a, const auto& b) {
-    return a.value.maxCoeff() < b.value.maxCoeff();
-  });
-  const Reflectance black = *darkest;
-  if (!is_grey_and_dark(black)) return reading;
-  const auto first = static_cast<std::size_t>(darkest - ring.begin());
-
-  PatternColours colours;
-  const Decision centre = decide(reflectance_of(*dots[0]), black);
-  colours.centre = centre.colour;
-  double probability = centre.probability;
-  for (std::size_t i = 1; i < ring.size(); ++i) {
-    const Decision decision = decide(ring[(first + i) % ring.size()], black);
-    if (decision.colour == DotColour::black) return reading;
-    colours.ring[i] = decision.colour;
-    probability *= decision.probability;
-  }
-  reading.confidence = probability;
-  if (probability < min_confidence) return reading;
+  const auto first = black_place(ring.places);
+  const Absorbance centre = absorbance_of(*dots[0]);
+  if (!first || centre.strength() < kWeakestCentre * median_strength(ring.places)) return reading;
+  const Decoding decoding = decide_all(ring.places, *first, centre);
+  if (!decoding.colours) return reading;
+  reading.confidence = decoding.probability;
+  if (reading.confidence < min_confidence) return reading;
   reading.status = ReadStatus::read;
-  reading.first = static_cast<int>(first);
-  reading.code = decode(colours);
+  reading.first = static_cast<int>(*first);
+  reading.code = decode(*decoding.colours);
   return reading;
 }
 
 bool looks_like(const ColourLevels& levels, const ColourLevels& black, DotColour colour) {
-  return decide(reflectance_of(levels), reflectance_of(black)).colour == colour;
+  return decide(balanced(absorbance_of(levels), tint_of(absorbance_of(black)))).colour == colour;
 }
 
 }  // namespace vigia::tracking

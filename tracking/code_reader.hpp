@@ -25,15 +25,19 @@ struct CodeReading {
   double confidence = 0.0;  ///< probability that every colour is right
 };
 
-/// Reads a code. A dot's reflectance is its level over the paper's, channel by channel; that of the
-/// black point is subtracted, and the rest scaled so that paper stays 1. What remains is black
-/// below a threshold, else the largest channel names the colour. The black point is the darkest
-/// place; it must be grey. Dots of one place in both rings must agree. Each decision's probability
-/// is that of a normal error, of the levels' noise and of a floor for uneven inks and light,
-/// staying on its side of the border.
+/// Reads a code from what the dots absorb: 1 − (level over the paper's), channel by channel. Blur
+/// makes all channels of a dot absorb less by the same factor, so a colour is told by the channels'
+/// ratios alone, whatever the dot's size and whether a camera's response came after the blur: a
+/// response that is the same for all channels keeps grey grey and the order of the channels.
+/// The black point is the place that absorbs all channels alike; what is left of a tint there
+/// (glare under coloured light) is taken out of all dots. It must absorb as much as the coloured
+/// dots of its size do. A dot is black when the least absorbed channel comes near the most absorbed
+/// one, else the least absorbed channel names its colour. Dots of one place in both rings must
+/// agree. Each decision's probability is that of a normal error, of the levels' noise and of a
+/// floor for inks and colour interpolation, staying on its side of the border.
 CodeReading read_code(const DotLevels& dots, double min_confidence);
 
-/// Whether a dot, whose colour is known, looks like it; @p black is a black dot's reflectance.
+/// Whether a dot, whose colour is known, looks like it; @p black are the levels of a black dot.
 bool looks_like(const ColourLevels& levels, const ColourLevels& black, DotColour colour);
 
 }  // namespace vigia::tracking

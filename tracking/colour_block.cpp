@@ -1,15 +1,18 @@
 #include "colour_block.hpp"
 
+#include "outline_loops.hpp"
+
+#include <opencv2/imgproc.hpp>
+
 namespace vigia::tracking {
 namespace {
 
-// Rec. 709 in 256ths.
-constexpr int kRed = 54;
-constexpr int kGreen = 183;
-constexpr int kBlue = 19;
+// Rec. 709 in 4096ths, and half for rounding.
+constexpr ChannelMixture kLuma{864, 2928, 304, 2048};
 
-int weighted(const vpRGBa& pixel) {
-  return kRed * pixel.R + kGreen * pixel.G + kBlue * pixel.B;
+cv::Mat matrix_of(vpImage<unsigned char>& image) {
+  return {static_cast<int>(image.getHeight()), static_cast<int>(image.getWidth()), CV_8U,
+          image.bitmap};
 }
 
 }  // namespace
@@ -25,24 +28,16 @@ void ColourBlock::read(const imaging::Frame& frame, const imaging::Window& windo
 
 void ColourBlock::luma(vpImage<unsigned char>& out) const {
   out.resize(static_cast<unsigned>(window_.height), static_cast<unsigned>(window_.width));
-  for (std::size_t i = 0; i < out.getSize(); ++i)
-    out.bitmap[i] = static_cast<unsigned char>((weighted(pixels_[i]) + 128) >> 8);
+  mix_channels(&pixels_.data()->R, kLuma, window_.width * window_.height, out.bitmap);
 }
 
-void ColourBlock::halved_luma(vpImage<unsigned char>& out) const {
-  const int width = window_.width / 2;
-  const int height = window_.height / 2;
-  out.resize(static_cast<unsigned>(height), static_cast<unsigned>(width));
-  for (int y = 0; y < height; ++y) {
-    const vpRGBa* above = row(window_.v + 2 * y);
-    const vpRGBa* below = above + window_.width;
-    unsigned char* line = out[static_cast<unsigned>(y)];
-    for (int x = 0; x < width; ++x) {
-      const int sum = weighted(above[2 * x]) + weighted(above[2 * x + 1]) + weighted(below[2 * x]) +
-                      weighted(below[2 * x + 1]);
-      line[x] = static_cast<unsigned char>((sum + 512) >> 10);
-    }
-  }
+void halve(vpImage<unsigned char>& image, vpImage<unsigned char>& out) {
+  const unsigned height = image.getHeight() / 2;
+  const unsigned width = image.getWidth() / 2;
+  out.resize(height, width);
+  cv::Mat halved = matrix_of(out);
+  cv::resize(matrix_of(image)(cv::Rect(0, 0, 2 * halved.cols, 2 * halved.rows)), halved,
+             halved.size(), 0.0, 0.0, cv::INTER_AREA);
 }
 
 }  // namespace vigia::tracking

@@ -23,13 +23,14 @@ class ColourBlock {
 
   /// The luma (Rec. 709), with its first pixel at the window's corner.
   void luma(vpImage<unsigned char>& out) const;
-  /// The luma's means over squares of two by two pixels: half the size, a quarter of the noise's
-  /// variance.
-  void halved_luma(vpImage<unsigned char>& out) const;
 
  private:
   imaging::Window window_;
   std::vector<vpRGBa> pixels_;
 };
+
+/// Means over squares of two by two pixels: half the size, a quarter of the noise's variance. An
+/// odd last row or column is left out.
+void halve(vpImage<unsigned char>& image, vpImage<unsigned char>& out);
 
 }  // namespace vigia::tracking

@@ -43,7 +43,9 @@ EllipseShape moved(EllipseShape shape, int du, int dv, double scale) {
 class CorrelationTracker::State {
  public:
   explicit State(const CorrelationTrackerParameters& parameters)
-      : parameters_(parameters), finder_(parameters.finder) {}
+      : parameters_(parameters),
+        finder_(parameters.finder),
+        fitter_(edge_fit_parameters(parameters.finder)) {}
 
   /// What is looked for and how far off it may be.
   struct Gate {
@@ -57,7 +59,7 @@ class CorrelationTracker::State {
   EllipseFeature refine(const vpImage<unsigned char>& image, const Window& window,
                         const EllipseShape& start, const Gate* gate, const Window& frame);
   TemplateMatch match(const vpImage<unsigned char>& image, const Window& window,
-                      const EllipseShape& start, double blur) const;
+                      const EllipseShape& start, double blur, const EdgeFit* outline) const;
   EllipseFeature judge(const TemplateMatch& match, const EdgeFit& outline, const Gate* gate,
                        const Window& frame) const;
   double noise_inflation(const TemplateMatch& match, const EdgeFit& outline) const;
@@ -74,21 +76,32 @@ class CorrelationTracker::State {
 
 TemplateMatch CorrelationTracker::State::match(const vpImage<unsigned char>& image,
                                                const Window& window, const EllipseShape& start,
-                                               double blur) const {
+                                               double blur, const EdgeFit* outline) const {
   constexpr double kMarginBlurs = 2.5;
-  return match_template(image, window, start,
-                        {std::max(parameters_.template_margin_px, kMarginBlurs * blur), blur,
-                         parameters_.max_iterations});
+  TemplateMatchParameters parameters;
+  parameters.margin_px = std::max(parameters_.template_margin_px, kMarginBlurs * blur);
+  parameters.blur_px = blur;
+  parameters.max_iterations = parameters_.max_iterations;
+  if (outline != nullptr) {
+    parameters.light = outline->light;
+    parameters.covered = outline->bad_sectors;
+  }
+  return match_template(image, window, start, parameters);
 }
 
 EllipseFeature CorrelationTracker::State::refine(const vpImage<unsigned char>& image,
                                                  const Window& window, const EllipseShape& start,
                                                  const Gate* gate, const Window& frame) {
-  const TemplateMatch sharp = match(image, window, start, parameters_.blur_px);
+  TemplateMatch sharp = match(image, window, start, parameters_.blur_px, nullptr);
+  if (parameters_.finder.robust) fitter_.set_noise(noise_level(image, window));
   // A correlation over all pixels hardly tells a hidden arc, another form or a cut outline.
   const EdgeFit outline =
       fitter_.fit(image, window, sharp.converged ? sharp.shape : start,
                   {sharp.ground - sharp.contrast, sharp.ground, parameters_.blur_px});
+  // What the outline shows of light and cover is no part of the model.
+  const bool disturbed = parameters_.finder.robust && (outline.light || outline.bad_sectors.any());
+  const EdgeFit* disturbance = disturbed ? &outline : nullptr;
+  if (disturbed) sharp = match(image, window, outline.shape, parameters_.blur_px, disturbance);
   EllipseFeature feature = judge(sharp, outline, gate, frame);
   // Against an edge that is much less sharp than its own, a template seldom settles.
   constexpr double kBlurred = 1.5;
@@ -96,7 +109,7 @@ EllipseFeature CorrelationTracker::State::refine(const vpImage<unsigned char>& i
   const double blur = outline.profile.blur;
   if (judge_fit(outline, parameters_.finder) == FeatureStatus::found &&
       blur > kBlurred * parameters_.blur_px && ellipse_of(outline.shape).b > kResolved * blur) {
-    const TemplateMatch blurred = match(image, window, outline.shape, blur);
+    const TemplateMatch blurred = match(image, window, outline.shape, blur, disturbance);
     EllipseFeature better = judge(blurred, outline, gate, frame);
     // With one freedom more, the match is to be that much better.
     if (better.status == FeatureStatus::found && better.score >= parameters_.certainty) {
@@ -148,6 +161,14 @@ EllipseFeature CorrelationTracker::State::judge(const TemplateMatch& match, cons
   if ((outline.shape.centre - c).norm() > parameters_.max_outline_offset_px)
     return lost_ellipse(FeatureStatus::occluded, score);
 
+  // Where the camera has cut a level off, r is largest for a disc of another size: the outline's
+  // fit knows of the limit.
+  constexpr double kClipped = 0.05;
+  if (parameters_.finder.robust && outline.clipped > kClipped) {
+    EllipseFeature feature = feature_of(outline, FeatureStatus::found);
+    feature.score = score;
+    return feature;
+  }
   EllipseFeature feature;
   feature.status = FeatureStatus::found;
   const EllipseEstimate estimate = estimate_of(match.shape, match.covariance);
@@ -155,6 +176,8 @@ EllipseFeature CorrelationTracker::State::judge(const TemplateMatch& match, cons
   feature.covariance = noise_inflation(match, outline) * estimate.covariance;
   feature.contrast = match.contrast;
   feature.score = score;
+  feature.visible = outline.agreement;
+  feature.clipped = outline.clipped;
   return feature;
 }
 

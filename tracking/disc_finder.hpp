@@ -17,10 +17,13 @@ struct DiscCandidate {
   bool touches_window = false;
 };
 
+/// How a tracker's discs are fitted.
+EdgeFitParameters edge_fit_parameters(const DiscTrackerParameters& parameters);
+
 /// Finds discs in a window without knowing where: blobs, tests of their form, then the fit of the
 /// outline. Bright discs are looked for in the negative. Where the pixels' noise would break up the
-/// blobs, they are looked for in a smoothed copy as well; the fit reads the pixels as they are, so
-/// that its covariance stays true.
+/// blobs, they are looked for in a smoothed copy as well, and in strong noise in one of half the
+/// size; the fit reads the pixels as they are, so that its covariance stays true.
 class DiscFinder {
  public:
   explicit DiscFinder(const DiscTrackerParameters& parameters);
@@ -36,20 +39,30 @@ class DiscFinder {
     const vpImage<unsigned char>& blobs;
     const vpImage<unsigned char>& pixels;
     bool negative;
+    double smoothing = 0.0;  ///< of the blobs' picture, px of the pixels'; 0: none
+    int scale = 1;           ///< pixels to a pixel of the blobs' picture
   };
 
   void find_dark(const vpImage<unsigned char>& image, const imaging::Window& window, bool negative,
                  double min_axis_ratio, std::vector<DiscCandidate>& out);
+  void find_in_half_size(const vpImage<unsigned char>& image, const imaging::Window& window,
+                         bool negative, double min_axis_ratio, std::vector<DiscCandidate>& out);
   void find_blobs(const Pictures& pictures, const imaging::Window& window, double min_axis_ratio,
                   std::vector<DiscCandidate>& out);
-  FeatureStatus judge(DiscCandidate& candidate, const vpImage<unsigned char>& image,
+  FeatureStatus judge(DiscCandidate& candidate, const Pictures& pictures,
                       const imaging::Window& window, double min_axis_ratio);
+  bool has_form(const Blob& blob, const Pictures& pictures) const;
+  FeatureStatus judge_outline(DiscCandidate& candidate, const Pictures& pictures,
+                              const EllipseShape& start, double min_axis_ratio);
+  EdgeFitter& fitter_for(const Pictures& pictures);
 
   DiscTrackerParameters parameters_;
   BlobFinder blobs_;
   EdgeFitter fitter_;
+  EdgeFitter noise_fitter_;  ///< knows the blur beforehand, which noise hardly lets it see
   vpImage<unsigned char> negative_;
   vpImage<unsigned char> smooth_;
+  double noise_ = 0.0;      ///< of the window, grey levels
   double smoothing_ = 0.0;  ///< standard deviation of the window's smoothing, px; 0: none
 };
 

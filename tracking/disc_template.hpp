@@ -1,7 +1,11 @@
 #pragma once
 
+#include "edge_fit.hpp"
 #include "ellipse_shape.hpp"
+#include "light_slope.hpp"
 
+#include <bitset>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -50,6 +54,10 @@ struct TemplateMatchParameters {
   double margin_px = 4.0;
   double blur_px = 0.75;
   int max_iterations = 12;  ///< of full steps, and of half steps after them where those swing
+  /// What the fit of the outline has seen: a slope of light, which is taken out, and sectors of the
+  /// outline that something covers, in which no pixel counts.
+  std::optional<LightSlope> light;
+  std::bitset<kOutlineSectors> covered;
 };
 
 /// Maximising r over the model's parameters is least squares with free gain and offset:

@@ -2,6 +2,7 @@
 
 #include "disc_finder.hpp"
 #include "lost_feature.hpp"
+#include "noise_smoothing.hpp"
 #include "pixel.hpp"
 #include "seeded_dot.hpp"
 
@@ -47,7 +48,7 @@ bool cut_by_frame(const EllipseShape& shape, const Window& frame) {
 class DiscTracker::State {
  public:
   explicit State(const DiscTrackerParameters& parameters)
-      : parameters_(parameters), finder_(parameters) {}
+      : parameters_(parameters), finder_(parameters), fitter_(edge_fit_parameters(parameters)) {}
 
   EllipseFeature acquire(Canvas& canvas, const EllipsePrediction& prediction);
   EllipseFeature track(Canvas& canvas);
@@ -223,6 +224,7 @@ EllipseFeature DiscTracker::State::track(Canvas& canvas) {
   const Window window = intersect(window_round(predicted, margin), frame);
   if (window.empty()) return lost_ellipse(FeatureStatus::not_found);
   canvas.require(window);
+  if (parameters_.robust) fitter_.set_noise(noise_level(canvas.image(), window));
 
   if (const auto dot = follow_dot(canvas.image(), predicted, window)) {
     const EdgeFit fit = fitter_.fit(canvas.image(), window, *dot, profile_);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "chromatic_shift.hpp"
 #include "colour_block.hpp"
 #include "edge_fit.hpp"
 
@@ -12,6 +13,7 @@ struct ColourLevels {
   Eigen::Array3d dot = Eigen::Array3d::Zero();
   Eigen::Array3d ground = Eigen::Array3d::Zero();
   Eigen::Array3d dot_sigma = Eigen::Array3d::Zero();
+  Eigen::Array3d noise = Eigen::Array3d::Ones();  ///< of the pixels about the fitted profile
 };
 
 enum class DotStatus { whole, hidden, cut, faint };
@@ -21,6 +23,7 @@ struct DotFit {
   EllipseShape shape;
   Eigen::Matrix2d centre_covariance = Eigen::Matrix2d::Identity();
   ColourLevels levels;
+  DotPulls pulls;     ///< of the channels, against the centre
   double blur = 0.8;  ///< px
 };
 
@@ -36,13 +39,16 @@ class DotFitter {
  public:
   explicit DotFitter(double min_agreement) : min_agreement_(min_agreement) {}
 
-  /// @p start is the expected outline. Reads only pixels of @p block.
+  /// @p start is the expected outline. Reads only pixels of @p block. Where the dot is new, all its
+  /// pixels tell of the channels' shifts, later some.
   DotFit fit(const ColourBlock& block, const EllipseShape& start, double blur);
   /// The same with levels that are known from the last frame.
   DotFit fit(const ColourBlock& block, const EllipseShape& start, double blur,
              const ColourLevels& levels);
 
  private:
+  static void measure(const ColourBlock& block, const imaging::Window& box, int step, DotFit& dot);
+
   double min_agreement_;
   EdgeFitter fitter_;
   vpImage<unsigned char> mixture_;

@@ -155,7 +155,6 @@ class MovingEdgeTracker::State {
   explicit State(const MovingEdgeTrackerParameters& parameters)
       : parameters_(parameters), seeds_(parameters.finder), finder_(parameters.finder) {
     edges_.setRange(parameters.range_px);
-    edges_.setSampleStep(parameters.sample_step_px);
     edges_.setMaskSize(parameters.mask_size);
     edges_.setThreshold(parameters.threshold);
     edges_.setMaskNumber(180);
@@ -189,10 +188,21 @@ std::optional<EdgeMeasurement> MovingEdgeTracker::State::measure(
   parameters[2] = 0.25 * start.sigma(0, 0);
   parameters[3] = 0.25 * start.sigma(0, 1);
   parameters[4] = 0.25 * start.sigma(1, 1);
+  // ViSP's step is an angle in degrees.
+  constexpr double kFewSites = 20.0;  // degrees
+  constexpr double kManySites = 2.0;
+  const Ellipse outline = ellipse_of(start);
+  const double radius = 0.5 * (outline.a + outline.b);
+  edges_.setSampleStep(
+      std::clamp(to_deg(parameters_.sample_step_px / radius), kManySites, kFewSites));
   EdgeSites sites;
   sites.setMe(&edges_);
   sites.setDisplay(vpMeSite::NONE);
   EdgeMeasurement out;
+  // A site holds on to what it first sees, and looks for the like of it from then on: on the flank
+  // of an edge it would stay beside it.
+  constexpr double kFirstLook = 4.0;  // px to either side, and less where the other side is near
+  sites.setInitRange(static_cast<unsigned>(std::clamp(outline.b / 3.0, 1.0, kFirstLook)));
   try {
     sites.initTracking(image, parameters);
     sites.track(image);
@@ -208,6 +218,10 @@ std::optional<EdgeMeasurement> MovingEdgeTracker::State::measure(
   out.sites = sites.good_sites();
   out.held = std::min(1.0, static_cast<double>(out.sites) / std::max(1U, sites.expected_sites()));
   out.scatter = scatter_of(sites, shape);
+  // ViSP cuts a site's place off to the pixel whose edge it takes.
+  constexpr double kHalfPixel = 0.5;
+  out.ellipse.u -= kHalfPixel;
+  out.ellipse.v -= kHalfPixel;
   return out;
 }
 
@@ -253,7 +267,9 @@ EllipseFeature MovingEdgeTracker::State::follow(Canvas& canvas, const EllipseSha
 
   const EllipseShape shape = shape_of(measured->ellipse);
   const double visible = visible_share(measured->ellipse, frame);
-  if (visible < parameters_.min_visible) return lost_ellipse(FeatureStatus::cut_by_border);
+  constexpr unsigned kArcSites = 30;  // an arc that fewer hold may be of any curve
+  if (visible < parameters_.min_visible || (visible < 1.0 && measured->sites < kArcSites))
+    return lost_ellipse(FeatureStatus::cut_by_border);
   measured->held = std::min(1.0, measured->held / visible);
   const double growth = 0.25 * std::log(shape.sigma.determinant() / expected.sigma.determinant());
   if (std::abs(growth) > parameters_.max_scale_step ||

@@ -57,4 +57,17 @@ void smooth(const vpImage<unsigned char>& image, const imaging::Window& window, 
                    cv::BORDER_REPLICATE | cv::BORDER_ISOLATED);
 }
 
+vpImage<unsigned char> halved(const vpImage<unsigned char>& image, const imaging::Window& window) {
+  vpImage<unsigned char> out(static_cast<unsigned>(window.height / 2),
+                             static_cast<unsigned>(window.width / 2));
+  for (unsigned v = 0; v < out.getHeight(); ++v) {
+    const unsigned char* upper = image[static_cast<unsigned>(window.v) + 2 * v] + window.u;
+    const unsigned char* lower = image[static_cast<unsigned>(window.v) + 2 * v + 1] + window.u;
+    for (unsigned u = 0; u < out.getWidth(); ++u)
+      out[v][u] = static_cast<unsigned char>(
+          (upper[2 * u] + upper[2 * u + 1] + lower[2 * u] + lower[2 * u + 1] + 2) / 4);
+  }
+  return out;
+}
+
 }  // namespace vigia::tracking

@@ -20,4 +20,7 @@ double smoothing_for(double noise, double min_contrast);
 void smooth(const vpImage<unsigned char>& image, const imaging::Window& window, double sigma,
             vpImage<unsigned char>& out);
 
+/// The window at half its size: each pixel the mean of two by two.
+vpImage<unsigned char> halved(const vpImage<unsigned char>& image, const imaging::Window& window);
+
 }  // namespace vigia::tracking

@@ -50,16 +50,6 @@ void OverlayPen::text(const std::string& words, const cv::Point& at, double scal
   cv::putText(canvas, words, at, cv::FONT_HERSHEY_SIMPLEX, scale, colour_, width_, cv::LINE_AA);
 }
 
-void OverlayPen::text_within(const std::string& words, const cv::Point& at, double scale) const {
-  int below = 0;
-  const cv::Size size = cv::getTextSize(words, cv::FONT_HERSHEY_SIMPLEX, scale, width_, &below);
-  const int top = size.height + 2;
-  text(words,
-       {std::clamp(at.x, 1, std::max(1, canvas_.cols - size.width - 2)),
-        std::clamp(at.y, top, std::max(top, canvas_.rows - 3))},
-       scale);
-}
-
 void draw_twice(vpImage<vpRGBa>& picture, const std::function<void(const OverlayPen&)>& draw) {
   // vpRGBa is R, G, B, A in memory.
   draw(OverlayPen(picture, cv::Scalar(20, 20, 60, 255), 3));

@@ -22,8 +22,6 @@ class OverlayPen {
   void ellipse(const Ellipse& ellipse) const;
   /// Writes with the left end of the base line at @p at.
   void text(const std::string& words, const cv::Point& at, double scale) const;
-  /// As text, moved so far that all of the words are in the picture.
-  void text_within(const std::string& words, const cv::Point& at, double scale) const;
 
  private:
   cv::Mat canvas_;

@@ -19,7 +19,7 @@ constexpr double kRim = 0.2;
 
 class PatternTracker::State {
  public:
-  State(const KnownCodes& known, const PatternTrackerParameters& parameters)
+  State(const KnownCodes& known, const PatternTrackerParams& parameters)
       : parameters_(parameters), eye_(known, parameters) {}
 
   PointsFeature acquire(const Frame& frame, const PointsPrediction& prediction) {
@@ -103,14 +103,14 @@ class PatternTracker::State {
     return feature;
   }
 
-  PatternTrackerParameters parameters_;
+  PatternTrackerParams parameters_;
   PatternEye eye_;
   std::optional<LandmarkId> expected_;
   std::optional<PatternSight> sight_;
   Eigen::Vector2d motion_ = Eigen::Vector2d::Zero();
 };
 
-PatternTracker::PatternTracker(const KnownCodes& known, const PatternTrackerParameters& parameters)
+PatternTracker::PatternTracker(const KnownCodes& known, const PatternTrackerParams& parameters)
     : state_(std::make_unique<State>(known, parameters)) {}
 PatternTracker::~PatternTracker() = default;
 

@@ -12,6 +12,11 @@ Eigen::Vector2d PlaneMap::operator()(const Eigen::Vector2d& p_l) const {
   return h.head<2>() / h.z();
 }
 
+Eigen::Vector2d PlaneMap::inverse(const Eigen::Vector2d& uv) const {
+  const Eigen::Vector3d p = iHl.inverse() * Eigen::Vector3d(uv.x(), uv.y(), 1.0);
+  return p.head<2>() / p.z();
+}
+
 Eigen::Matrix2d PlaneMap::jacobian(const Eigen::Vector2d& p_l) const {
   const Eigen::Vector3d h = iHl * Eigen::Vector3d(p_l.x(), p_l.y(), 1.0);
   const Eigen::Vector2d uv = h.head<2>() / h.z();

@@ -14,6 +14,8 @@ struct PlaneMap {
   Eigen::Matrix3d iHl = Eigen::Matrix3d::Identity();
 
   Eigen::Vector2d operator()(const Eigen::Vector2d& p_l) const;
+  /// The point of the plane that is seen at @p uv.
+  Eigen::Vector2d inverse(const Eigen::Vector2d& uv) const;
   /// ∂(u, v)/∂(x, y) at a point of the plane.
   Eigen::Matrix2d jacobian(const Eigen::Vector2d& p_l) const;
   /// The image of a small circle, to first order.

@@ -1,13 +1,13 @@
 #pragma once
 
-#include <array>
+#include "tag_fit.hpp"
+
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
 #include <visp3/core/vpImage.h>
-
-#include "vigia/tracking/tag_tracker.hpp"
 
 namespace vigia::tracking {
 
@@ -16,18 +16,32 @@ struct TagDetection {
   int tag = 0;
   int hamming = 0;
   double decision_margin = 0.0;
-  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   /// Lower left, lower right, upper right, upper left, as the tag's reader sees them.
-  std::array<Eigen::Vector2d, 4> corners;
+  TagCorners corners;
 };
 
-/// libapriltag for the family 36h11, on one thread.
+/// What is asked of a detection of one family: short codes come about by chance.
+struct TagDemands {
+  int max_hamming = 0;
+  double min_decision_margin = 0.0;
+};
+
+/// libapriltag for one family, on one thread.
 class TagDetector {
  public:
-  TagDetector(double quad_decimate, int max_hamming);
+  /// @p family is one of tag_families(). Throws InputError for another.
+  TagDetector(const std::string& family, double quad_decimate, int max_hamming);
   ~TagDetector();
 
   std::vector<TagDetection> detect(vpImage<unsigned char>& image);
+
+  /// How the family's tag number @p tag is printed.
+  const TagGrid& grid(int tag);
+  /// The least that a reading of this family must show.
+  const TagDemands& demands() const;
+  /// The probability that fields which are no tag at all do not read as one, with up to
+  /// @p wrong_bits bits wrong.
+  double confidence_of(int wrong_bits) const;
 
  private:
   struct Library;

@@ -2,16 +2,11 @@
 
 #include "lost_feature.hpp"
 #include "point_window.hpp"
-#include "side_fit.hpp"
 #include "tag_detector.hpp"
+#include "tag_fit.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <optional>
-
-#include "vigia/core/plane_geometry.hpp"
-#include "vigia/imaging/tag_bitmap.hpp"
 
 namespace vigia::tracking {
 namespace {
@@ -19,54 +14,21 @@ namespace {
 using imaging::Frame;
 using imaging::Window;
 
-constexpr double kQuietZone = 0.4;  // of the corners' distance from the middle: the white rim
+constexpr double kRimShare = 0.4;   // of the corners' distance from the middle: the white rim
 constexpr int kSmallestWindow = 8;  // px; libapriltag needs some
-
-/// The probability that fields which are no tag at all do not read as one: 587 codes in four turns,
-/// with up to @p wrong_bits of 36 bits wrong.
-double confidence_of(int wrong_bits) {
-  constexpr double kBits = 36.0;
-  double words = 0.0;
-  double choices = 1.0;
-  for (int k = 0; k <= wrong_bits; ++k) {
-    words += choices;
-    choices *= (kBits - k) / (k + 1.0);
-  }
-  return 1.0 - kTags * 4.0 * words / std::pow(2.0, kBits);
-}
-
-/// The corners where fitted sides meet; none when a side cannot be fitted or a corner leaps.
-std::optional<std::array<Corner, 4>> refit(const vpImage<unsigned char>& image,
-                                           const TagDetection& tag) {
-  std::array<std::optional<SideFit>, 4> sides;
-  for (std::size_t k = 0; k < 4; ++k) {
-    SideBand band{tag.corners[k], tag.corners[(k + 1) % 4], tag.centre, 0.0};
-    // Within the black border and the white rim, each at least one field wide.
-    const Eigen::Vector2d across = tag.corners[(k + 3) % 4] - tag.corners[k];
-    const Eigen::Vector2d along = (band.to - band.from).normalized();
-    const double depth = std::abs(cross(along, across));
-    band.half_width = 0.8 * depth / imaging::kTagFields;
-    sides[k] = fit_side(image, band);
-    if (!sides[k]) return std::nullopt;
-  }
-  std::array<Corner, 4> corners;
-  for (std::size_t k = 0; k < 4; ++k) {
-    const auto corner = meet(*sides[(k + 3) % 4], *sides[k]);
-    const double field = (tag.corners[(k + 1) % 4] - tag.corners[k]).norm() / imaging::kTagFields;
-    if (!corner || (corner->uv - tag.corners[k]).norm() > 0.5 * field + 0.5) return std::nullopt;
-    corners[k] = *corner;
-  }
-  return corners;
-}
+constexpr double kSteps = 3.0;      // px that a fit may move
 
 }  // namespace
 
 class TagTracker::State {
  public:
-  State(const KnownCodes& known, const TagTrackerParameters& parameters)
+  State(const KnownCodes& known, const TagTrackerParams& parameters)
       : known_(known),
         parameters_(parameters),
-        detector_(parameters.quad_decimate, parameters.max_hamming) {}
+        detector_(parameters.family, parameters.quad_decimate, parameters.max_hamming) {
+    fit_.max_bad_fields = std::min(parameters.max_hamming, detector_.demands().max_hamming);
+    min_margin_ = std::max(parameters.min_decision_margin, detector_.demands().min_decision_margin);
+  }
 
   PointsFeature acquire(const Frame& frame, const PointsPrediction& prediction) {
     expected_ = prediction.landmark;
@@ -74,19 +36,22 @@ class TagTracker::State {
   }
 
   PointsFeature track(const Frame& frame) {
-    if (last_.empty()) return lost_points(FeatureStatus::not_found);
-    std::vector<LabelledPoint> predicted = last_;
+    if (last_.points.empty()) return lost_points(FeatureStatus::not_found);
+    std::vector<LabelledPoint> predicted = last_.points;
     for (LabelledPoint& point : predicted) point.uv += motion_;
+    if (const auto feature = follow(frame, predicted)) {
+      keep(*feature);
+      return *feature;
+    }
     return search(frame, predicted, motion_.norm());
   }
 
   std::vector<PointsFeature> find(const Frame& frame, const Window& window) {
     std::vector<PointsFeature> features;
     if (window.width < kSmallestWindow || window.height < kSmallestWindow) return features;
-    image_.resize(static_cast<unsigned>(window.height), static_cast<unsigned>(window.width));
-    frame.read_grey(window, image_.bitmap, window.width);
+    read(frame, window);
     for (const TagDetection& tag : detector_.detect(image_)) {
-      if (tag.decision_margin < parameters_.min_decision_margin) continue;
+      if (tag.decision_margin < min_margin_) continue;
       features.push_back(feature_of(tag, {window.u, window.v}));
     }
     return features;
@@ -100,35 +65,68 @@ class TagTracker::State {
   void expect_motion(const Eigen::Vector2d& shift) { motion_ += shift; }
 
  private:
-  PointsFeature feature_of(const TagDetection& tag, const Eigen::Vector2d& origin) const {
-    PointsFeature feature;
-    feature.code = tag.tag;
-    feature.confidence = confidence_of(tag.hamming);
-    const Landmark* landmark = nullptr;
+  void read(const Frame& frame, const Window& window) {
+    image_.resize(static_cast<unsigned>(window.height), static_cast<unsigned>(window.width));
+    frame.read_grey(window, image_.bitmap, window.width);
+  }
+
+  const Landmark* landmark_of(int tag) const {
     for (const Landmark& candidate : known_.map.all()) {
       const auto* shape = std::get_if<TagShape>(&candidate.shape);
-      if (shape != nullptr && shape->tag == tag.tag) landmark = &candidate;
+      if (shape != nullptr && shape->tag == tag) return &candidate;
     }
+    return nullptr;
+  }
+
+  PointsFeature feature_of(const TagDetection& tag, const Eigen::Vector2d& origin) {
+    PointsFeature feature;
+    feature.code = tag.tag;
+    feature.confidence = detector_.confidence_of(tag.hamming);
+    const Landmark* landmark = landmark_of(tag.tag);
     if (landmark != nullptr) feature.landmark = landmark->id;
-    const auto corners = refit(image_, tag);
-    if (!corners) {
-      feature.status = FeatureStatus::occluded;
-      return feature;
-    }
-    for (int k = 0; k < 4; ++k) {
-      const Corner& corner = (*corners)[static_cast<std::size_t>(k)];
-      feature.points.push_back({k, corner.uv + origin, corner.covariance});
-    }
+    const TagFit fit = fit_tag(image_, detector_.grid(tag.tag), tag.corners, fit_);
+    feature.status = FeatureStatus::occluded;
+    if (fit.status != TagFitStatus::fitted) return feature;
+    list_corners(fit, origin, feature);
     feature.status =
         landmark != nullptr || known_.any ? FeatureStatus::found : FeatureStatus::unknown_code;
     return feature;
   }
 
+  static void list_corners(const TagFit& fit, const Eigen::Vector2d& origin,
+                           PointsFeature& feature) {
+    feature.points.clear();
+    for (int k = 0; k < 4; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      feature.points.push_back({k, fit.corners[i] + origin, fit.covariance[i]});
+    }
+  }
+
+  /// The tag that is tracked, fitted from where it is expected.
+  std::optional<PointsFeature> follow(const Frame& frame,
+                                      const std::vector<LabelledPoint>& predicted) {
+    const Window window =
+        window_of(predicted, kRimShare * extent_of(predicted) + kSteps, frame.full());
+    if (window.width < kSmallestWindow || window.height < kSmallestWindow) return std::nullopt;
+    read(frame, window);
+    const Eigen::Vector2d origin(window.u, window.v);
+    TagCorners corners;
+    for (std::size_t k = 0; k < corners.size(); ++k) corners[k] = predicted[k].uv - origin;
+    TagFitParams params = fit_;
+    params.start_blur = blur_;
+    const TagFit fit = fit_tag(image_, detector_.grid(std::get<int>(*last_.code)), corners, params);
+    if (fit.status != TagFitStatus::fitted) return std::nullopt;
+    blur_ = fit.blur;
+    PointsFeature feature = last_;
+    list_corners(fit, origin, feature);
+    return feature;
+  }
+
   PointsFeature search(const Frame& frame, const std::vector<LabelledPoint>& points, double reach) {
-    const double rim = kQuietZone * extent_of(points) + parameters_.search_margin_px;
+    const double rim = kRimShare * extent_of(points) + parameters_.search_margin_px;
     std::vector<PointsFeature> features = find(frame, window_of(points, reach + rim, frame.full()));
     for (const PointsFeature& feature : features)
-      if (feature.landmark == expected_ && (expected_ || feature.code == code_)) {
+      if (feature.landmark == expected_ && (expected_ || feature.code == last_.code)) {
         if (feature.status == FeatureStatus::found) keep(feature);
         return feature;
       }
@@ -141,22 +139,23 @@ class TagTracker::State {
   }
 
   void keep(const PointsFeature& feature) {
-    last_ = feature.points;
-    code_ = feature.code;
+    last_ = feature;
     motion_.setZero();
   }
 
   KnownCodes known_;
-  TagTrackerParameters parameters_;
+  TagTrackerParams parameters_;
   TagDetector detector_;
+  TagFitParams fit_;
+  double min_margin_ = 0.0;
+  double blur_ = TagFitParams{}.start_blur;  ///< of the tracked tag, px
   vpImage<unsigned char> image_;
   std::optional<LandmarkId> expected_;
-  std::optional<LandmarkCode> code_;
-  std::vector<LabelledPoint> last_;
+  PointsFeature last_;
   Eigen::Vector2d motion_ = Eigen::Vector2d::Zero();
 };
 
-TagTracker::TagTracker(const KnownCodes& known, const TagTrackerParameters& parameters)
+TagTracker::TagTracker(const KnownCodes& known, const TagTrackerParams& parameters)
     : state_(std::make_unique<State>(known, parameters)) {}
 TagTracker::~TagTracker() = default;
 

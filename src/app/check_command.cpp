@@ -93,7 +93,8 @@ FileKind kind_of(const ConfigNode& root) {
   if (has_one_of({"mission", "seeds", "variants"})) return FileKind::campaign;
   if (has_one_of({"route", "start", "world"})) return FileKind::mission;
   if (has_one_of({"room", "landmarks"})) return FileKind::world;
-  if (has_one_of({"head", "base", "camera", "zoom"})) return FileKind::robot;
+  if (has_one_of({"head", "base", "camera", "zoom", "cameras", "range_ring"}))
+    return FileKind::robot;
   return FileKind::mission;
 }
 

@@ -1,6 +1,8 @@
 #include "commands.hpp"
+#include "usage_mistake.hpp"
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -16,8 +18,16 @@ struct LandmarkOptions {
   TagShape tag;
   DiscShape disc;
   std::string out;
+  std::string paper;
   double dpi = 300.0;
 };
+
+std::optional<report::Paper> parse_paper(const std::string& text) {
+  if (text == "a4") return report::Paper::a4;
+  if (text == "a3") return report::Paper::a3;
+  if (text == "letter") return report::Paper::letter;
+  return std::nullopt;
+}
 
 void check_number(const char* option, int value, int count, const char* things) {
   if (value < 0 || value >= count)
@@ -29,10 +39,12 @@ void check_metres(const char* option, double value, double low, double high) {
     throw InputError(fmt::format("{} {}: must lie in [{}, {}]", option, value, low, high));
 }
 
-int print(const report::LandmarkShape& shape, const LandmarkOptions& options) {
+int print(const report::LandmarkShape& asked, const LandmarkOptions& options) {
   check_metres("--dpi", options.dpi, 36.0, 2400.0);
-  report::print_landmark(shape, options.out, options.dpi);
-  const report::PrintedPage page = report::printed_page(shape);
+  const auto paper = parse_paper(options.paper);
+  const report::LandmarkShape shape = paper ? report::fitted_to(asked, *paper) : asked;
+  report::print_landmark(shape, options.out, options.dpi, paper);
+  const report::PrintedPage page = report::printed_page(shape, paper);
   fmt::print(stderr, "{}: {:.0f} × {:.0f} mm\n", options.out, 1e3 * page.width_m,
              1e3 * page.height_m);
   return 0;
@@ -43,6 +55,9 @@ CLI::App* add_kind(CLI::App& command, const char* name, const char* what,
   CLI::App* kind = command.add_subcommand(name, what);
   kind->add_option("-o,--out", options->out, "A .pdf, .svg or .png file")->required();
   kind->add_option("--dpi", options->dpi, "Pixels per inch of a .png")->capture_default_str();
+  kind->add_option("--paper", options->paper,
+                   "As large as a sheet takes it: a4, a3 or letter; the print says its size")
+      ->check(one_of({"a4", "a3", "letter"}));
   return kind;
 }
 

@@ -1,202 +1,278 @@
 #include "commands.hpp"
+#include "interrupt.hpp"
+#include "track_run.hpp"
 #include "usage_mistake.hpp"
 
 #include <algorithm>
-#include <cctype>
+#include <charconv>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
-#include <opencv2/imgproc.hpp>
-#include <opencv2/videoio.hpp>
+#include <omp.h>
+#include <opencv2/core/utility.hpp>
 
+#include "vigia/core/camera_file.hpp"
 #include "vigia/core/error.hpp"
-#include "vigia/core/output_folder.hpp"
 #include "vigia/core/suggestion.hpp"
-#include "vigia/imaging/image_frame.hpp"
-#include "vigia/tracking/picture_run.hpp"
-#include "vigia/tracking/point_picture_run.hpp"
+#include "vigia/core/world_map.hpp"
 #include "vigia/tracking/trackers.hpp"
 
 namespace vigia::app {
 namespace {
 
-namespace fs = std::filesystem;
-
 struct TrackOptions {
   std::string tracker = "disc";
   std::vector<std::string> inputs;
-  std::string out;
+  std::string polarity = "either";
+  std::string radius_px;
+  std::string ids;
+  double min_score = 0.0;
+  int every = 1;
+  int expected = 0;
+  int remember = 50;
+  std::string camera;
+  std::string landmarks;
+  double size_m = 0.0;
+  double timeout_s = 10.0;
+  int threads = 1;
   bool quiet = false;
+  bool no_overlay = false;
+  TrackOutput output;
 };
 
-bool has_ending(const fs::path& file, const std::vector<std::string>& endings) {
-  std::string ending = file.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return std::find(endings.begin(), endings.end(), ending) != endings.end();
+bool tracks_points(const TrackOptions& options) {
+  return find_name(tracking::trackers(), options.tracker)->make_points != nullptr;
 }
 
-bool is_picture(const fs::path& file) {
-  return has_ending(file, {".png", ".jpg", ".jpeg", ".pgm", ".ppm", ".bmp", ".tif", ".tiff"});
+/// A whole text as a number; nothing when it is none.
+template <typename Number>
+std::optional<Number> parsed(std::string_view text) {
+  Number value{};
+  const char* end = text.data() + text.size();
+  const auto result = std::from_chars(text.data(), end, value);
+  if (text.empty() || result.ec != std::errc() || result.ptr != end) return std::nullopt;
+  return value;
 }
 
-bool is_video(const fs::path& file) {
-  return has_ending(file, {".mp4", ".avi", ".mpg", ".mpeg", ".mkv", ".mov", ".webm"});
-}
-
-/// The pictures of a folder in the order of their names.
-std::vector<fs::path> pictures_in(const fs::path& folder) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (entry.is_regular_file() && is_picture(entry.path())) files.push_back(entry.path());
-  if (files.empty()) throw InputError(folder.string() + ": no pictures in this folder");
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
-/// One picture's part of the table and of the count.
-struct PictureOutcome {
-  std::string csv;
-  int found = 0;
+struct RadiusRange {
+  double min_px = 3.0;
+  double max_px = std::numeric_limits<double>::infinity();
 };
 
-/// Discs or landmarks of points, followed from picture to picture.
-class Pictures {
- public:
-  explicit Pictures(const std::string& tracker) {
-    if (find_name(tracking::trackers(), tracker)->make_points != nullptr)
-      points_.emplace(tracker);
-    else
-      discs_.emplace(tracker);
+RadiusRange parse_radius(const std::string& text) {
+  if (text.empty()) return {};
+  const std::size_t colon = text.find(':');
+  const auto low = parsed<double>(std::string_view(text).substr(0, colon));
+  const auto high = colon == std::string::npos
+                        ? std::nullopt
+                        : parsed<double>(std::string_view(text).substr(colon + 1));
+  if (!low || !high || !(*low >= 3.0) || !(*high >= *low) || !(*high <= 1e5))
+    throw InputError(
+        fmt::format("--radius-px: found '{}', must be MIN:MAX, in pixels, with "
+                    "3 ≤ MIN ≤ MAX ≤ 100000",
+                    text));
+  return {*low, *high};
+}
+
+tracking::Polarity parse_polarity(const std::string& text) {
+  if (text == "dark") return tracking::Polarity::dark;
+  if (text == "bright") return tracking::Polarity::bright;
+  return tracking::Polarity::either;
+}
+
+/// A tag's number, or floor-room-pattern.
+std::optional<tracking::LandmarkCode> parse_code(const std::string& text, bool tag) {
+  if (tag) {
+    const auto number = parsed<int>(text);
+    if (!number || *number < 0) return std::nullopt;
+    return *number;
   }
+  const std::size_t first = text.find('-');
+  const std::size_t second = text.find('-', first == std::string::npos ? first : first + 1);
+  if (second == std::string::npos) return std::nullopt;
+  const std::string_view view(text);
+  const auto floor = parsed<int>(view.substr(0, first));
+  const auto room = parsed<int>(view.substr(first + 1, second - first - 1));
+  const auto pattern = parsed<int>(view.substr(second + 1));
+  if (!floor || !room || !pattern) return std::nullopt;
+  return PatternCode{*floor, *room, *pattern};
+}
 
-  std::string header() const {
-    return discs_ ? tracking::picture_csv_header() : tracking::point_csv_header();
+std::vector<tracking::LandmarkCode> parse_codes(const TrackOptions& options) {
+  if (!options.ids.empty() && !tracks_points(options))
+    throw InputError("--ids: discs have no codes; --tracker pattern and tag have");
+  const bool tag = options.tracker == "tag";
+  std::vector<tracking::LandmarkCode> codes;
+  std::istringstream list(options.ids);
+  for (std::string id; std::getline(list, id, ',');) {
+    const auto code = parse_code(id, tag);
+    if (!code)
+      throw InputError(fmt::format("--ids: found '{}', must be {}", id,
+                                   tag ? "the number of a tag" : "FLOOR-ROOM-PATTERN"));
+    codes.push_back(*code);
   }
-  const char* things() const { return discs_ ? "discs" : "landmarks"; }
+  return codes;
+}
 
-  /// Draws into @p overlay unless it is null.
-  PictureOutcome next(const fs::path& name, const imaging::ImageFrame& picture,
-                      vpImage<vpRGBa>* overlay) {
-    return discs_ ? next_of(*discs_, name, picture, overlay)
-                  : next_of(*points_, name, picture, overlay);
+TrackRun::Tracker make_tracker(const TrackOptions& options) {
+  const std::vector<tracking::LandmarkCode> codes = parse_codes(options);
+  const RadiusRange radius = parse_radius(options.radius_px);
+  if (tracks_points(options)) {
+    if (!options.radius_px.empty())
+      throw InputError("--radius-px: is for --tracker disc, ellipse and correlation");
+    tracking::PointPictureRunParams params;
+    params.tracker = options.tracker;
+    params.known = codes;
+    params.min_confidence = options.min_score;
+    params.every = options.every;
+    params.expected = options.expected;
+    params.remember = options.remember;
+    return tracking::PointPictureRun(params);
   }
+  tracking::PictureRunParams params;
+  params.tracker = options.tracker;
+  params.polarity = parse_polarity(options.polarity);
+  params.min_radius_px = radius.min_px;
+  params.max_radius_px = radius.max_px;
+  params.min_score = options.min_score;
+  params.every = options.every;
+  params.expected = options.expected;
+  params.remember = options.remember;
+  return tracking::PictureRun(params);
+}
 
- private:
-  static std::string lines(const tracking::PointPictureResult& result) {
-    return tracking::point_csv_lines(result);
+LandmarkMap read_landmarks(const std::string& file) {
+  MapReader reader(load_config(file), "world");
+  return read_world_map(reader).landmarks;
+}
+
+std::optional<LandmarkPoses> make_poses(const TrackOptions& options) {
+  const bool sized = options.size_m > 0.0 || !options.landmarks.empty();
+  if (options.camera.empty()) {
+    if (sized) throw InputError("--size and --landmarks give poses only with --camera FILE");
+    return std::nullopt;
   }
-  static std::string lines(const tracking::PictureResult& result) {
-    std::string text;
-    for (const auto& row : result.rows) text += tracking::picture_csv_line(row) + "\n";
-    return text;
+  if (!sized)
+    throw InputError("--camera: how large are the landmarks? Give --size M or --landmarks FILE");
+  LandmarkSizes sizes;
+  sizes.size_m = options.size_m;
+  if (!options.landmarks.empty()) sizes.map = read_landmarks(options.landmarks);
+  return LandmarkPoses(read_camera(options.camera), std::move(sizes));
+}
+
+void use_threads(int threads) {
+  cv::setNumThreads(threads);
+  // ViSP's conversions are OpenMP loops whose threads spin between pictures.
+  omp_set_num_threads(threads);
+}
+
+void track_input(const std::string& input, const imaging::SourceParams& params, TrackRun& run) {
+  const auto source = imaging::open_pictures(input, params);
+  while (!interrupted() && !run.closed()) {
+    const auto picture = source->next();
+    if (!picture) return;
+    run.picture(*picture);
   }
-
-  template <typename Run>
-  static PictureOutcome next_of(Run& run, const fs::path& name, const imaging::ImageFrame& picture,
-                                vpImage<vpRGBa>* overlay) {
-    const auto result = run.next(name, picture);
-    if (overlay != nullptr) tracking::draw_overlay(result, *overlay);
-    const auto found = std::count_if(result.rows.begin(), result.rows.end(), [](const auto& row) {
-      return row.feature.status == tracking::FeatureStatus::found;
-    });
-    return {lines(result), static_cast<int>(found)};
-  }
-
-  std::optional<tracking::PictureRun> discs_;
-  std::optional<tracking::PointPictureRun> points_;
-};
-
-/// Runs the tracker and collects the table and, when asked for, the overlay pictures.
-class TrackRun {
- public:
-  explicit TrackRun(const TrackOptions& options) : run_(options.tracker) {
-    if (options.out.empty()) return;
-    folder_.emplace(options.out, "track.csv");
-    folder_->make("overlay");
-  }
-
-  void picture(const fs::path& name, const imaging::ImageFrame& picture) {
-    auto overlay = folder_ ? imaging::colour_image(picture) : vpImage<vpRGBa>();
-    const PictureOutcome outcome = run_.next(name, picture, folder_ ? &overlay : nullptr);
-    ++pictures_;
-    csv_ += outcome.csv;
-    found_ += outcome.found;
-    if (!folder_) return;
-    imaging::write_png(folder_->staging() / "overlay" /
-                           fmt::format("{:05}_{}.png", pictures_, name.stem().string()),
-                       overlay);
-  }
-
-  void video(const fs::path& file) {
-    cv::VideoCapture capture(file.string());
-    if (!capture.isOpened()) throw InputError(file.string() + ": no video that can be read");
-    cv::Mat bgr;
-    int number = 0;
-    while (capture.read(bgr)) {
-      vpImage<vpRGBa> image(static_cast<unsigned>(bgr.rows), static_cast<unsigned>(bgr.cols));
-      cv::Mat rgba(bgr.rows, bgr.cols, CV_8UC4, image.bitmap);
-      cv::cvtColor(bgr, rgba, cv::COLOR_BGR2RGBA);
-      picture(fmt::format("{}#{:05}", file.stem().string(), ++number),
-              imaging::ImageFrame(std::move(image)));
-    }
-    if (number == 0) throw InputError(file.string() + ": a video without a picture");
-  }
-
-  /// Writes what was collected; the table goes to stdout as well.
-  void finish(bool quiet) {
-    const std::string table = run_.header() + "\n" + csv_;
-    fmt::print("{}", table);
-    if (folder_) {
-      folder_->add("track.csv", table);
-      folder_->commit();
-    }
-    if (!quiet)
-      fmt::print(stderr, "{} {} found in {} pictures\n", found_, run_.things(), pictures_);
-  }
-
-  int found() const { return found_; }
-
- private:
-  Pictures run_;
-  std::optional<OutputFolder> folder_;
-  std::string csv_;
-  int pictures_ = 0;
-  int found_ = 0;
-};
+}
 
 int track(const TrackOptions& options) {
-  TrackRun run(options);
-  for (const auto& text : options.inputs) {
-    const fs::path input(text);
-    if (fs::is_directory(input)) {
-      for (const auto& file : pictures_in(input)) run.picture(file, imaging::read_image(file));
-    } else if (is_video(input)) {
-      run.video(input);
-    } else {
-      run.picture(input, imaging::read_image(input));
-    }
+  use_threads(options.threads);
+  TrackOutput output = options.output;
+  output.overlays = !options.no_overlay;
+  TrackRun run(make_tracker(options), make_poses(options), output);
+  imaging::SourceParams params;
+  params.timeout_s = options.timeout_s;
+  params.stop = interrupted;
+  catch_interrupts();
+  for (const std::string& input : options.inputs) {
+    if (interrupted() || run.closed()) break;
+    track_input(input, params, run);
   }
-  run.finish(options.quiet);
-  return run.found() > 0 ? 0 : 1;
+  if (!options.quiet)
+    fmt::print(stderr, "{} {} found in {} pictures{}\n", run.found(), run.things(), run.pictures(),
+               interrupted() ? ", then interrupted" : "");
+  return run.found() > 0 && run.fewest() >= options.expected ? 0 : 1;
+}
+
+void add_what(CLI::App& command, TrackOptions& options) {
+  const std::vector<std::string> trackers = names_of(tracking::trackers());
+  command.add_option("--tracker", options.tracker, joined(trackers))
+      ->check(one_of(trackers))
+      ->capture_default_str();
+  command
+      .add_option("inputs", options.inputs,
+                  "Pictures, folders, videos, NAME%04d.png, /dev/videoN, rtsp:// or http:// "
+                  "addresses, or - for pictures on stdin")
+      ->required();
+  command.add_option("--polarity", options.polarity, "Discs that are dark, bright or either")
+      ->check(one_of({"dark", "bright", "either"}))
+      ->capture_default_str();
+  command.add_option("--radius-px", options.radius_px,
+                     "MIN:MAX, smallest and largest semi-axis of discs, px");
+  command.add_option("--ids", options.ids, "Tags (3,7) or patterns (2-13-4,2-13-5) that count");
+  command
+      .add_option("--min-score", options.min_score,
+                  "Discs with less of a score, landmarks with less of a confidence do not count")
+      ->check(CLI::Range(0.0, 1.0));
+  command
+      .add_option("--expect", options.expected,
+                  "Landmarks in sight: none are looked for while so many are held, and the exit "
+                  "status is 1 when a picture shows fewer")
+      ->check(CLI::Range(0, 100000));
+  command
+      .add_option("--every", options.every,
+                  "Look for newcomers in every n-th picture, and track between")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  command
+      .add_option("--remember", options.remember,
+                  "Pictures for which a landmark that is not seen keeps its number")
+      ->check(CLI::Range(0, 1000000))
+      ->capture_default_str();
+}
+
+void add_pose(CLI::App& command, TrackOptions& options) {
+  command.add_option("--camera", options.camera,
+                     "Calibrated camera (ViSP's XML, OpenCV's YAML): gives poses");
+  command
+      .add_option("--size", options.size_m,
+                  "With --camera: a disc's diameter, a tag's black side, a pattern's sheet, m")
+      ->check(CLI::Range(1e-4, 100.0));
+  command.add_option("--landmarks", options.landmarks,
+                     "With --camera: a world file that has the landmarks' sizes");
+}
+
+void add_output(CLI::App& command, TrackOptions& options) {
+  command.add_option("--out", options.output.folder,
+                     "Folder for track.csv, poses.csv and the overlay pictures");
+  command.add_flag("--no-overlay", options.no_overlay, "No pictures in the folder");
+  command.add_flag("--view", options.output.view, "Show the overlay in a window");
+  command
+      .add_option("--timeout", options.timeout_s,
+                  "Seconds to wait for a camera's address, and for each of its pictures")
+      ->check(CLI::Range(0.1, 3600.0))
+      ->capture_default_str();
+  command.add_option("--threads", options.threads, "Threads of the image libraries")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  command.add_flag("--quiet", options.quiet, "Only the table");
 }
 
 }  // namespace
 
 void add_track(CLI::App& app, int& status) {
   auto options = std::make_shared<TrackOptions>();
-  CLI::App* command = app.add_subcommand("track", "Run a tracker on real pictures or a video");
-  const auto trackers = names_of(tracking::trackers());
-  command->add_option("--tracker", options->tracker, joined(trackers))
-      ->check(one_of(trackers))
-      ->capture_default_str();
-  command->add_option("inputs", options->inputs, "Pictures, folders of pictures, or a video")
-      ->required();
-  command->add_option("--out", options->out, "Folder for track.csv and the overlay pictures");
-  command->add_flag("--quiet", options->quiet, "Only the table");
+  CLI::App* command =
+      app.add_subcommand("track", "Run a tracker on pictures, a video or a live camera");
+  add_what(*command, *options);
+  add_pose(*command, *options);
+  add_output(*command, *options);
   command->callback([options, &status] { status = track(*options); });
 }
 

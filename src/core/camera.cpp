@@ -63,6 +63,8 @@ bool in_image(const Intrinsics& intrinsics, const Eigen::Vector2d& uv, double ma
          uv.y() <= intrinsics.height - 1 - margin;
 }
 
+ZoomCalibration::ZoomCalibration() : samples_(1) {}
+
 ZoomCalibration::ZoomCalibration(int width, int height, double u0, double v0,
                                  std::vector<ZoomSample> samples)
     : samples_(std::move(samples)) {

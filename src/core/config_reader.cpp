@@ -400,6 +400,10 @@ MapReader MapReader::map_or_file(const std::string& key) {
   return map(key);
 }
 
+void MapReader::only_where(const std::string& key, const std::string& words) {
+  conditions_.emplace(key, words);
+}
+
 void MapReader::finish() const {
   for (const auto& [key, value] : node_->entries) {
     if (asked_.count(key) != 0) continue;
@@ -407,6 +411,10 @@ void MapReader::finish() const {
     if (const RenamedKey* renamed = find_renamed_key(path(key)))
       throw renamed_error(place, *renamed);
     const std::string of = what_.empty() ? "" : " in " + what_;
+    const auto condition = conditions_.find(key);
+    if (condition != conditions_.end())
+      throw InputError(place, "the key " + quoted_for_message(key) + of + " counts only where " +
+                                  condition->second);
     const std::vector<std::string> known(asked_.begin(), asked_.end());
     throw InputError(place, "unknown key " + quoted_for_message(key) + of + suggestion(key, known) +
                                 " (known: " + joined(known) + ")");

@@ -16,6 +16,10 @@ void OutputFile::write(std::string_view bytes) {
   if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) fail();
 }
 
+void OutputFile::flush() {
+  if (std::fflush(file_.get()) != 0) fail();
+}
+
 void OutputFile::close() {
   if (!file_) return;
   if (std::fflush(file_.get()) != 0) fail();

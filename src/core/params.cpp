@@ -100,16 +100,26 @@ void ParamVisitor::name(const char* key, std::string& value, const std::vector<s
 }
 
 bool ParamReader::given(const char* key, const Describe& describe_keys) {
-  if (!here().has(key)) return false;
+  if (absent_ != nullptr) note_absent(key);
+  if (absent_ != nullptr || !here().has(key)) return false;
   describe_keys();
   return true;
 }
 
-void ParamReader::where(bool holds, const std::string&, const Describe& describe_keys) {
-  if (holds) describe_keys();
+// Where it does not hold, the keys are visited to be noted, and the fields stay as they are: what
+// else a description does to its struct must hang on the condition as well.
+void ParamReader::where(bool holds, const std::string& words, const Describe& describe_keys) {
+  const std::string* const before = absent_;
+  if (!holds && before == nullptr) absent_ = &words;
+  describe_keys();
+  absent_ = before;
 }
 
 void ParamReader::field(const char* key, const Field& field, const About& about) {
+  if (absent_ != nullptr) {
+    note_absent(key);
+    return;
+  }
   Field copy = field;
   std::visit(FieldReader(here(), key, about.must_be_given), copy);
 }
@@ -122,25 +132,30 @@ void ParamReader::below(MapReader map, const Describe& describe_map) {
 }
 
 void ParamReader::map(const char* key, const About&, const Describe& describe_map) {
+  if (absent_ != nullptr) return note_absent(key);
   below(here().map(key), describe_map);
 }
 
 void ParamReader::map_or_file(const char* key, const About&, const Describe& describe_map) {
+  if (absent_ != nullptr) return note_absent(key);
   below(here().map_or_file(key), describe_map);
 }
 
 void ParamReader::each(const char* key, const About&, const Describe& describe_item) {
+  if (absent_ != nullptr) return note_absent(key);
   for (MapReader& item : here().maps(key)) below(std::move(item), describe_item);
 }
 
 bool ParamReader::toggle_map(const char* key, bool on, const About&, const Describe& describe_map) {
+  if (absent_ != nullptr) note_absent(key);
+  if (absent_ != nullptr) return on;
   if (!here().holds_map(key)) return here().choice(key, {"off", "realistic"}, on ? 1 : 0) == 1;
   below(here().map(key), describe_map);
   return true;
 }
 
 void ParamReader::require(bool holds, const char* key, const std::string& message) {
-  if (!holds) throw here().error(key, message);
+  if (!holds && absent_ == nullptr) throw here().error(key, message);
 }
 
 double written_degrees(double radians) {

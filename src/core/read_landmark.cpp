@@ -72,12 +72,15 @@ void describe(ParamVisitor& v, PlacedLandmark& placed) {
   v.angle("normal_deg", placed.normal_yaw, {-360.0, 360.0},
           About("the direction it faces, from the world's x axis").required());
   placed.landmark.wMl = wall_mount(centre_w, placed.normal_yaw);
+  const auto take = [&](LandmarkKind described, const auto& shape) {
+    if (described == kind) placed.landmark.shape = shape;
+  };
   v.where(kind == LandmarkKind::disc, "`kind: disc`",
-          [&] { placed.landmark.shape = describe_disc(v); });
+          [&] { take(LandmarkKind::disc, describe_disc(v)); });
   v.where(kind == LandmarkKind::pattern, "`kind: pattern`",
-          [&] { placed.landmark.shape = describe_pattern(v); });
+          [&] { take(LandmarkKind::pattern, describe_pattern(v)); });
   v.where(kind == LandmarkKind::tag, "`kind: tag`",
-          [&] { placed.landmark.shape = describe_tag(v); });
+          [&] { take(LandmarkKind::tag, describe_tag(v)); });
   v.boolean("free_standing", placed.free_standing, "needs no face to lie on");
 }
 

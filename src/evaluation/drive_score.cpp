@@ -16,9 +16,12 @@ Eigen::Matrix3d covariance_of_anywhere(const FloorPlan& plan) {
 }
 
 EstimatorSetup estimator_setup(const mission::MissionSetup& setup) {
-  return {setup.world.landmarks, setup.on_ground(), setup.robot.robot.odometry,
+  return {setup.world.landmarks,
+          setup.on_ground(),
+          setup.robot.robot.odometry,
           setup.robot.robot.sensor,
-          setup.prior ? setup.prior->covariance : covariance_of_anywhere(setup.world.plan)};
+          setup.prior ? setup.prior->covariance : covariance_of_anywhere(setup.world.plan),
+          setup.prior.has_value()};
 }
 
 }  // namespace

@@ -77,11 +77,19 @@ void EstimatorScorer::add_errors(const mission::EstimatorTick& tick, const Belie
   const double squared = error.head<2>().squaredNorm();
   const double nees = evaluation::nees({truth, belief.pose, belief.covariance});
   const double bound_m2 = bound_.covariance().topLeftCorner<2, 2>().trace();
-  ++ticks_;
-  squared_position_ += squared;
-  squared_heading_ += error.z() * error.z();
-  nees_ += nees;
-  bound_trace_ += bound_m2;
+  if (!fixed_ && belief.status == BeliefStatus::tracking) {
+    // What it believed before it knew anything is no estimate.
+    fixed_ = true;
+    if (!setup_.prior) {
+      sums_ = {};
+      score_.position_max_m = 0.0;
+    }
+  }
+  ++sums_.ticks;
+  sums_.squared_position += squared;
+  sums_.squared_heading += error.z() * error.z();
+  sums_.nees += nees;
+  sums_.bound_trace += bound_m2;
   score_.position_max_m = std::max(score_.position_max_m, std::sqrt(squared));
   score_.position_final_m = std::sqrt(squared);
   score_.heading_final_rad = std::abs(error.z());
@@ -97,11 +105,11 @@ void EstimatorScorer::add_errors(const mission::EstimatorTick& tick, const Belie
 
 LocalizerScore EstimatorScorer::score() const {
   LocalizerScore score = score_;
-  const double n = std::max(1, ticks_);
-  score.position_rmse_m = std::sqrt(squared_position_ / n);
-  score.heading_rmse_rad = std::sqrt(squared_heading_ / n);
-  score.nees_mean = nees_ / n;
-  score.pcrlb_position_rms_m = std::sqrt(bound_trace_ / n);
+  const double n = std::max(1, sums_.ticks);
+  score.position_rmse_m = std::sqrt(sums_.squared_position / n);
+  score.heading_rmse_rad = std::sqrt(sums_.squared_heading / n);
+  score.nees_mean = sums_.nees / n;
+  score.pcrlb_position_rms_m = std::sqrt(sums_.bound_trace / n);
   const Eigen::Matrix3d bound = bound_.covariance();
   score.pcrlb_position_final_m = mean_length(bound.topLeftCorner<2, 2>());
   score.pcrlb_heading_final_rad = std::sqrt(2.0 * bound(2, 2) / kPi);

@@ -140,8 +140,10 @@ std::optional<DiscMatch> match(const MeasurementModel& model, const EllipseObser
 
 std::optional<Linearised<3>> linearise(const MeasurementModel& model, const DiscMatch& match,
                                        const Vector6& at) {
-  const auto image = predict_disc(match.landmark, match.shot, model.on_ground(),
-                                  Pose2::from_vector(at.head<3>()), {at(3), at(4), at(5)});
+  const Eigen::Vector3d shared = model.look_biases(match.shot.camera).matrix();
+  const auto image =
+      predict_disc(match.landmark, match.shot, model.on_ground(), Pose2::from_vector(at.head<3>()),
+                   {shared(0) * at(3), shared(1) * at(4), shared(2) * at(5)});
   if (!image) return std::nullopt;
   const double reading = model.params().sensor.reading_angle;
   const Eigen::Matrix<double, 3, 2> J = image->dz_dbias.leftCols<2>();
@@ -149,7 +151,7 @@ std::optional<Linearised<3>> linearise(const MeasurementModel& model, const Disc
   seen.H << image->dz_dpose, image->dz_dbias;
   seen.y = match.z - image->z;
   seen.R = match.R + reading * reading * J * J.transpose();
-  if (!model.has_look_biases(match.shot.camera)) seen.H.rightCols<3>().setZero();
+  seen.H.rightCols<3>() = seen.H.rightCols<3>().eval() * shared.asDiagonal();
   return seen;
 }
 

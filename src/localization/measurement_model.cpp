@@ -45,8 +45,10 @@ std::optional<double> MeasurementModel::log_likelihood(const Observation& observ
       observation);
 }
 
-bool MeasurementModel::has_look_biases(CameraId camera) const {
-  return std::holds_alternative<HeadGeometry>(on_ground_.rig.at(camera).mount);
+Eigen::Array3d MeasurementModel::look_biases(CameraId camera) const {
+  const Camera& seen_by = on_ground_.rig.at(camera);
+  if (!on_head(seen_by)) return Eigen::Array3d::Zero();
+  return {1.0, 1.0, std::holds_alternative<ZoomCalibration>(seen_by.optics) ? 1.0 : 0.0};
 }
 
 bool MeasurementModel::hides(const Eigen::Vector3d& from_w, const Eigen::Vector3d& to_w) const {

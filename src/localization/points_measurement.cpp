@@ -78,8 +78,10 @@ std::optional<PointsMatch> match(const MeasurementModel& model,
 
 std::optional<Linearised<6>> linearise(const MeasurementModel& model, const PointsMatch& match,
                                        const Vector6& at) {
+  const Eigen::Vector3d shared = model.look_biases(match.shot.camera).matrix();
   const auto image = measure_points(match.points, match.landmark.wMl, match.shot, model.on_ground(),
-                                    Pose2::from_vector(at.head<3>()), {at(3), at(4), at(5)});
+                                    Pose2::from_vector(at.head<3>()),
+                                    {shared(0) * at(3), shared(1) * at(4), shared(2) * at(5)});
   if (!image) return std::nullopt;
   const double reading = model.params().sensor.reading_angle;
   const Eigen::Matrix<double, 6, 2> J = image->H.middleCols<2>(3);
@@ -91,7 +93,7 @@ std::optional<Linearised<6>> linearise(const MeasurementModel& model, const Poin
   seen.rank = std::min(kMaxRank, static_cast<int>(measured));
   seen.scatter = image->chi2 - image->y.squaredNorm();
   seen.scatter_dof = 2 * static_cast<int>(match.points.size()) - seen.rank;
-  if (!model.has_look_biases(match.shot.camera)) seen.H.rightCols<3>().setZero();
+  seen.H.rightCols<3>() = seen.H.rightCols<3>().eval() * shared.asDiagonal();
   return seen;
 }
 

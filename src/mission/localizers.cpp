@@ -17,6 +17,10 @@ bool anywhere(const MissionSetup&) {
   return true;
 }
 
+bool has_landmarks(const MissionSetup& setup) {
+  return !setup.world.landmarks.all().empty();
+}
+
 bool has_patterns(const MissionSetup& setup) {
   const auto& landmarks = setup.world.landmarks.all();
   return std::any_of(landmarks.begin(), landmarks.end(), [](const Landmark& landmark) {
@@ -51,7 +55,7 @@ const std::vector<LocalizerEntry>& localizers() {
         "landmarks"},
        true,
        FirstPose::recovery,
-       &anywhere,
+       &has_landmarks,
        &make_ekf},
       {{"odometry", "dead reckoning alone", "nothing"},
        true,
@@ -66,8 +70,8 @@ const std::vector<LocalizerEntry>& localizers() {
        &make_pattern_fix},
       {{"bearing_only", "directions to landmarks alone", "landmarks"},
        false,
-       FirstPose::itself,
-       &anywhere,
+       FirstPose::looks,
+       &has_landmarks,
        &make_bearing_only},
   };
   return table;
@@ -87,7 +91,9 @@ bool needs_prior(const LocalizerEntry& entry, const MissionSetup& setup) {
     case FirstPose::prior:
       return true;
     case FirstPose::recovery:
-      return entry.name != setup.primary;
+      return entry.name != setup.primary || setup.robot.directed_camera() == nullptr;
+    case FirstPose::looks:
+      return setup.robot.directed_camera() == nullptr;
     case FirstPose::itself:
       return false;
   }

@@ -111,7 +111,7 @@ void require_fit(ParamVisitor& v, const char* key, const MissionSetup& setup) {
     v.require(setup.prior || !needs_prior(entry, setup), key,
               "'" + name +
                   "' cannot start without a prior (start.prior: false); leave it out, or let it be "
-                  "the primary where the recovery can find it");
+                  "the primary of a robot whose head can look around");
   }
 }
 
@@ -169,6 +169,19 @@ void require_cameras(ParamVisitor& v, const MissionSetup& setup) {
   }
 }
 
+/// What comes later than the localizers remember is lost.
+void require_in_time(ParamVisitor& v, const MissionSetup& setup) {
+  const auto& late = setup.disturbances.latency;
+  const double delay_s = late ? late->latency_s + late->processing_s : 0.0;
+  const double history_s = std::min(setup.ekf.history_s, setup.bearing_only.history_s);
+  for (const sim::CameraSetup& camera : setup.robot.cameras)
+    v.require(camera.camera.latency_s + delay_s <= history_s, "localization",
+              "images of camera " + std::to_string(camera.camera.id) + " come " +
+                  std::to_string(camera.camera.latency_s + delay_s) +
+                  " s late (its latency_s and disturbances.latency), and the localizers remember " +
+                  std::to_string(history_s) + " s (history_s of ekf and bearing_only)");
+}
+
 void describe_planner(ParamVisitor& v, MissionSetup& setup) {
   describe(v, setup.look);
   if (setup.look.policy != "fixed") return;
@@ -218,6 +231,7 @@ void describe(ParamVisitor& v, MissionSetup& setup) {
   v.name("tracker", setup.tracker, tracking::ellipse_tracker_names(),
          "of discs; `vigia help trackers` tells them apart");
   v.map("localization", "who estimates the pose", [&] { describe_localization(v, setup); });
+  require_in_time(v, setup);
   v.map("planner", "when and where the robot looks", [&] { describe_planner(v, setup); });
   require_cameras(v, setup);
   setup.gaze.look_angle = setup.noise.sensor.look_angle;

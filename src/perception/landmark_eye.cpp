@@ -59,6 +59,18 @@ PointsObservation observed(const tracking::PointsFeature& feature, const Shot& s
   return {shot, expected, *feature.landmark, feature.points, feature.confidence};
 }
 
+/// Leaves out discs so small that their size is measured a per cent too small: where nobody brings
+/// them to a size by a zoom, the same error comes in every image.
+void drop_small_discs(std::vector<Observation>& observations) {
+  constexpr double kMinAxis_px = 4.5;
+  const auto small = [](const Observation& observation) {
+    const auto* disc = std::get_if<EllipseObservation>(&observation);
+    return disc != nullptr && disc->ellipse.b < kMinAxis_px;
+  };
+  observations.erase(std::remove_if(observations.begin(), observations.end(), small),
+                     observations.end());
+}
+
 /// Centre, and of an ellipse its axes, of other features their radius.
 void append_feature(std::string& line, const Observation& seen) {
   const auto out = std::back_inserter(line);
@@ -88,6 +100,7 @@ std::vector<Observation> LandmarkEye::observe(const Capture& capture, const Beli
   last_ = {};
   if (!directed_) {
     last_.observations = survey(capture);
+    drop_small_discs(last_.observations);
     last_.status = last_.observations.empty() ? tracking::FeatureStatus::not_found
                                               : tracking::FeatureStatus::found;
   } else if (!request) {

@@ -155,19 +155,73 @@ void write_words(const Sheet& sheet, const LandmarkShape& shape, const PrintedPa
   scale_bar(sheet, page, scale, page.height_m - 0.005);
 }
 
+/// Width and height of a sheet, upright, m.
+Eigen::Vector2d size_of(Paper paper) {
+  switch (paper) {
+    case Paper::a4:
+      return {0.210, 0.297};
+    case Paper::a3:
+      return {0.297, 0.420};
+    case Paper::letter:
+      return {0.2159, 0.2794};
+  }
+  return {0.210, 0.297};
+}
+
+/// Half the largest landmark's sheet that a paper takes beside the words.
+double largest_half_width(Paper paper) {
+  const Eigen::Vector2d size = size_of(paper);
+  return 0.5 * std::min(size.x(), size.y() - kStrip);
+}
+
+struct Scaled {
+  double scale;
+
+  LandmarkShape operator()(DiscShape disc) const {
+    disc.radius_m *= scale;
+    return disc;
+  }
+  LandmarkShape operator()(PatternShape shape) const {
+    shape.outer_radius_m *= scale;
+    shape.inner_radius_m *= scale;
+    shape.dot_radius_m *= scale;
+    shape.centre_radius_m *= scale;
+    shape.sheet_half_width_m *= scale;
+    return shape;
+  }
+  LandmarkShape operator()(TagShape tag) const {
+    tag.side_m *= scale;
+    return tag;
+  }
+};
+
 }  // namespace
 
-PrintedPage printed_page(const LandmarkShape& shape) {
+PrintedPage printed_page(const LandmarkShape& shape, std::optional<Paper> paper) {
   PrintedPage page;
   page.half_width_m = sheet_half_width(shape);
   page.width_m = std::max(kNarrowest, 2.0 * page.half_width_m);
   page.height_m = 2.0 * page.half_width_m + kStrip;
+  if (paper) {
+    page.width_m = size_of(*paper).x();
+    page.height_m = size_of(*paper).y();
+  }
   page.centre_m << 0.5 * page.width_m, page.half_width_m;
   return page;
 }
 
-void print_landmark(const LandmarkShape& shape, const std::filesystem::path& file, double dpi) {
-  const PrintedPage page = printed_page(shape);
+LandmarkShape fitted_to(const LandmarkShape& shape, Paper paper) {
+  return std::visit(Scaled{largest_half_width(paper) / sheet_half_width(shape)}, shape);
+}
+
+void print_landmark(const LandmarkShape& shape, const std::filesystem::path& file, double dpi,
+                    std::optional<Paper> paper) {
+  constexpr double kRounding = 1e-9;  // m
+  const PrintedPage page = printed_page(shape, paper);
+  if (paper && page.half_width_m > largest_half_width(*paper) + kRounding)
+    throw InputError({file.string()}, "the landmark's sheet is " +
+                                          millimetres(2.0 * page.half_width_m) +
+                                          " wide, more than the paper takes");
   const bool pixels = file.extension() == ".png";
   const double scale = (pixels ? dpi : kVectorUnitsPerInch) / kMetresPerInch;
   if (pixels && std::max(page.width_m, page.height_m) * scale > kLongestPng)

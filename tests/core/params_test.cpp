@@ -145,8 +145,9 @@ TEST(Params, AreRejectedWithTheirPlace) {
             "(known: max_stride_m, stride_m)");
   EXPECT_EQ(mistake("age_s: 7\nmount_m: [0, 0, -1]\n"),
             "c.yaml:3:10: creature.mount_m: a saddle lies above the ground");
-  EXPECT_THAT(mistake("age_s: 7\ntame: false\nfoals: []\n"),
-              ::testing::HasSubstr("c.yaml:4:1: unknown key 'foals' in creature"));
+  EXPECT_THAT(
+      mistake("age_s: 7\ntame: false\nfoals: []\n"),
+      ::testing::HasSubstr("c.yaml:4:1: the key 'foals' in creature counts only where tame: true"));
 }
 
 TEST(KeyReference, GivesUnitRangeDefaultAndMeaning) {

@@ -8,16 +8,11 @@ namespace vigia {
 namespace {
 
 Rig mixed_rig() {
-  Camera moving;
-  moving.mount = HeadGeometry{{0.1, 0.0, 1.0}, 0.2, {0.05, 0.01, 0.0}};
-  moving.optics = ZoomCalibration(640, 480, 319.5, 239.5, {{8.0, 700.0, 0.0}, {80.0, 7000.0, 0.0}});
-  Camera mirror;
-  mirror.id = 4;
-  FixedMount mount;
-  mount.rMc.translation() = Eigen::Vector3d(0.0, 0.0, 0.7);
-  mirror.mount = mount;
-  mirror.optics = CameraModel{UnifiedOmni{}};
-  return {{moving, mirror}};
+  const ZoomCalibration zoom(640, 480, 319.5, 239.5, {{8.0, 700.0, 0.0}, {80.0, 7000.0, 0.0}});
+  FixedMount mirror;
+  mirror.rMc.translation() = Eigen::Vector3d(0.0, 0.0, 0.7);
+  return {{{0, HeadGeometry{{0.1, 0.0, 1.0}, 0.2, {0.05, 0.01, 0.0}}, zoom},
+           {4, mirror, CameraModel{UnifiedOmni{}}}}};
 }
 
 TEST(Rig, FindsACameraByItsId) {

@@ -98,6 +98,20 @@ TEST(MeasurementModel, ADiscIsLinearisedAsFiniteDifferencesHaveIt) {
   }
 }
 
+TEST(MeasurementModel, ALensThatDoesNotZoomHasNoErrorOfItsFocalLengthAndAFixedCameraNoErrorAtAll) {
+  const auto biases_of = [](const CameraMount& mount, const Optics& optics) {
+    Camera camera;
+    camera.mount = mount;
+    camera.optics = optics;
+    return MeasurementModel(test::room_landmarks(), {Rig{{camera}}, {}}, coarse()).look_biases(0);
+  };
+  const Optics lens = CameraModel{Intrinsics{}};
+  EXPECT_TRUE(biases_of(HeadGeometry{}, ZoomCalibration{}).isApprox(Eigen::Array3d(1, 1, 1)));
+  EXPECT_TRUE(biases_of(HeadGeometry{}, lens).isApprox(Eigen::Array3d(1, 1, 0)));
+  EXPECT_TRUE(biases_of(FixedMount{}, ZoomCalibration{}).isZero());
+  EXPECT_TRUE(biases_of(FixedMount{}, lens).isZero());
+}
+
 TEST(MeasurementModel, TheLikelihoodOfADiscIsTheGaussianWithTheHeadsErrorsMarginalised) {
   const MeasurementModel model = room_model(LandmarkMap({*test::room_landmarks().find(4)}));
   const EllipseObservation seen = ellipse_of_4();

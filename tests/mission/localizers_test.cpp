@@ -58,6 +58,27 @@ TEST(Localizers, WithoutAPriorThoseThatCannotStartAreLeftOutOrRefusedByName) {
   EXPECT_EQ(refusal({"start.prior=false", "localization.localizers=[ekf, bearing_only]"}), "");
 }
 
+TEST(Localizers, WithoutAHeadThatLooksAroundNobodyFindsHimselfByLooks) {
+  const std::string fixed = "robot={name: a, cameras: [{mount: fixed, focal_px: 500}]}";
+  for (const std::string name : {"ekf", "bearing_only"})
+    EXPECT_THAT(refusal({fixed, "start.prior=false", "localization.localizers=[" + name + "]"}),
+                HasSubstr("'" + name + "' cannot start without a prior"));
+}
+
+TEST(Localizers, WithoutLandmarksThoseThatNeedThemAreRefused) {
+  EXPECT_THAT(refusal({"world.landmarks=[]", "planner.policy=nearest"}),
+              HasSubstr("'ekf' needs landmarks"));
+  EXPECT_EQ(refusal({"world.landmarks=[]", "localization.primary=odometry"}), "");
+}
+
+TEST(Localizers, ImagesThatComeLaterThanTheyRememberAreRefused) {
+  EXPECT_THAT(refusal({"disturbances.latency={latency_s: 0.9, processing_s: 0.2}"}),
+              AllOf(HasSubstr("images of camera 0 come 1.1"), HasSubstr("history_s")));
+  EXPECT_EQ(refusal({"disturbances.latency={latency_s: 0.9, processing_s: 0.2}",
+                     "localization.ekf.history_s=2", "localization.bearing_only.history_s=2"}),
+            "");
+}
+
 TEST(Localizers, AllTakeTheirNoiseFromTheOneModelUnlessTheirOwnKeysOverrideIt) {
   const auto setup = load("armingol-room", {"localization.noise.sensor.look_angle_deg=0.6",
                                             "localization.noise.centre_floor_px=0.03",

@@ -206,5 +206,26 @@ TEST(Printable, WhatCannotBePrintedIsSaid) {
   EXPECT_THROW(print_landmark(DiscShape{1.0}, dir.path() / "disc.png", 1200.0), InputError);
 }
 
+TEST(Paper, ALandmarkIsAsLargeAsTheSheetTakesIt) {
+  const struct {
+    Paper paper;
+    double width_m, height_m;
+  } sheets[] = {
+      {Paper::a4, 0.210, 0.297}, {Paper::a3, 0.297, 0.420}, {Paper::letter, 0.2159, 0.2794}};
+  for (const auto& sheet : sheets)
+    for (const LandmarkShape& shape :
+         {LandmarkShape(DiscShape{}), LandmarkShape(TagShape{}), LandmarkShape(PatternShape{})}) {
+      const PrintedPage page = printed_page(fitted_to(shape, sheet.paper), sheet.paper);
+      EXPECT_DOUBLE_EQ(page.width_m, sheet.width_m);
+      EXPECT_DOUBLE_EQ(page.height_m, sheet.height_m);
+      EXPECT_NEAR(page.half_width_m, 0.5 * sheet.width_m, 1e-12);
+      EXPECT_DOUBLE_EQ(page.centre_m.x(), 0.5 * sheet.width_m);
+    }
+}
+
+TEST(Paper, ALandmarkThatIsTooLargeForItIsAnInputError) {
+  EXPECT_THROW(print_landmark(DiscShape{0.5}, "never.pdf", 300.0, Paper::a4), InputError);
+}
+
 }  // namespace
 }  // namespace vigia::report

@@ -123,7 +123,8 @@ cameras:
   EXPECT_DOUBLE_EQ(setup.zoom().max_zoom_mm(), 48.0);
   EXPECT_DOUBLE_EQ(setup.robot.head.mount_r.x(), 0.2);
   EXPECT_DOUBLE_EQ(setup.robot.head.camera_offset_h.x(), 0.05);
-  const auto& mount = std::get<HeadGeometry>(setup.rig().at(0).mount);
+  const Rig rig = setup.rig();
+  const auto& mount = std::get<HeadGeometry>(rig.at(0).mount);
   EXPECT_DOUBLE_EQ(mount.mount_yaw, from_deg(10.0));
   EXPECT_DOUBLE_EQ(mount.camera_offset_h.z(), 0.01);
 }

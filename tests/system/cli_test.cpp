@@ -265,29 +265,6 @@ TEST_F(Program, ReportsAMissingMissionFile) {
   EXPECT_THAT(result.err, HasSubstr("none.yaml"));
 }
 
-const std::string kPictures = "/usr/share/visp-images-data/ViSP-images";
-
-TEST_F(Program, TracksTheThirtySixCirclesOfAPicture) {
-  if (!fs::exists(kPictures)) GTEST_SKIP() << "visp-images-data is not installed";
-  const auto result = vigia("track " + kPictures + "/calibration/grid36-01.pgm --quiet --out " +
-                            (dir_.path() / "tracks").string());
-  EXPECT_EQ(result.status, 0) << result.err;
-  EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 37);
-  EXPECT_EQ(vigia::testing::read_text(dir_.path() / "tracks/track.csv"), result.out);
-  EXPECT_TRUE(fs::exists(dir_.path() / "tracks/overlay/00001_grid36-01.png"));
-}
-
-TEST_F(Program, TracksTheTagsOfAPicture) {
-  const std::string file = kPictures + "/AprilTag/benchmark/640x480/tag36_11_640x480.png";
-  if (!fs::exists(file)) GTEST_SKIP() << "visp-images-data is not installed";
-  const auto result =
-      vigia("track --tracker tag " + file + " --quiet --out " + (dir_.path() / "tags").string());
-  EXPECT_EQ(result.status, 0) << result.err;
-  // Five tags of four corners, and the header.
-  EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 21);
-  EXPECT_EQ(vigia::testing::read_text(dir_.path() / "tags/track.csv"), result.out);
-}
-
 TEST_F(Program, PrintsAPatternAndReadsItBack) {
   const auto print = dir_.path() / "pattern.png";
   const auto printed =
@@ -314,25 +291,6 @@ TEST_F(Program, SaysWhichLandmarksThereAre) {
   }
   EXPECT_EQ(vigia("landmark tag --id 5 -o " + (dir_.path() / "x.doc").string()).status, 2);
   EXPECT_FALSE(fs::exists(dir_.path() / "x.pdf"));
-}
-
-TEST_F(Program, RejectsATruncatedPictureAndLeavesNoFolder) {
-  if (!fs::exists(kPictures)) GTEST_SKIP() << "visp-images-data is not installed";
-  const std::string whole = vigia::testing::read_text(kPictures + "/calibration/grid36-01.pgm");
-  const auto cut = file("cut.pgm", whole.substr(0, whole.size() / 2));
-  const auto result =
-      vigia("track " + cut.string() + " --out " + (dir_.path() / "tracks").string());
-  EXPECT_EQ(result.status, 2);
-  EXPECT_THAT(result.err, HasSubstr("cut.pgm"));
-  EXPECT_EQ(result.out, "");
-  EXPECT_FALSE(fs::exists(dir_.path() / "tracks"));
-}
-
-TEST_F(Program, RejectsAFolderWithoutPictures) {
-  fs::create_directory(dir_.path() / "empty");
-  const auto result = vigia("track " + (dir_.path() / "empty").string());
-  EXPECT_EQ(result.status, 2);
-  EXPECT_THAT(result.err, HasSubstr("no pictures"));
 }
 
 struct WrongMission {

@@ -21,11 +21,17 @@ const fs::path kStored = "/usr/share/visp-images-data/ViSP-images";
 const fs::path kEllipse = kStored / "ellipse" / "ellipse.pgm";
 const fs::path kGrid = kStored / "calibration" / "grid36-01.pgm";
 
+PictureRunParams hard_params_for(const std::string& tracker) {
+  PictureRunParams params;
+  params.tracker = tracker;
+  return params;
+}
+
 std::vector<EllipseFeature> find_in(const vpImage<unsigned char>& picture,
                                     const std::string& tracker) {
   const imaging::ImageFrame frame(picture);
   imaging::Canvas canvas = canvas_of(frame);
-  return make_picture_tracker(tracker)->find_all(canvas);
+  return make_picture_tracker(hard_params_for(tracker))->find_all(canvas);
 }
 
 vpImage<unsigned char> grey_picture(const fs::path& file) {
@@ -79,12 +85,12 @@ TEST_P(NoisyDiscs, AreFoundAndNothingElseIs) {
 
 TEST_P(NoisyDiscs, AreFollowedFromPictureToPicture) {
   RandomStream random(65, "noisy sequence");
-  PictureRun pictures(GetParam());
+  PictureRun pictures(hard_params_for(GetParam()));
   for (int k = 0; k < 8; ++k) {
     const Ellipse disc{90.3 + 3.0 * k, 108.6 - k, 40.0, 33.0, 0.4};
     SyntheticImage image(220, 220, 200.0);
     image.paint_ellipse(disc, 50.0);
-    const auto rows = pictures.next("", imaging::ImageFrame(image.expose(30.0, random))).rows;
+    const auto rows = pictures.next(imaging::ImageFrame(image.expose(30.0, random)));
     ASSERT_EQ(rows.size(), 1U) << k;
     EXPECT_EQ(rows[0].feature.status, FeatureStatus::found) << k;
     EXPECT_EQ(rows[0].target, 1) << k;

@@ -39,6 +39,26 @@ TEST(MovingEdgeTracker, ADiscIsFollowedWithinTheStatedBias) {
   EXPECT_LT(std::sqrt(axis_squares / (2.0 * kFrames)), 1.5 * parameters.axis_bias_px);
 }
 
+TEST(MovingEdgeTracker, CentresHaveNoCommonBiasFromStartsBesideThem) {
+  RandomStream random(34, "beside");
+  for (const double offset : {-2.0, 0.0, 2.0}) {
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    constexpr int kPictures = 40;
+    for (int k = 0; k < kPictures; ++k) {
+      const Ellipse disc{49.0 + random.uniform(0.0, 1.0), 49.0 + random.uniform(0.0, 1.0), 15.0,
+                         14.0, random.uniform(-1.5, 1.5)};
+      const imaging::ImageFrame frame = DiscScene{}.expose(disc, random);
+      imaging::Canvas canvas = canvas_of(frame);
+      MovingEdgeTracker tracker;
+      tracker.start(canvas, {disc.u + offset, disc.v, disc.a, disc.b, disc.psi});
+      const EllipseFeature feature = tracker.track(canvas);
+      ASSERT_EQ(feature.status, FeatureStatus::found) << offset;
+      mean += Eigen::Vector2d(feature.ellipse.u - disc.u, feature.ellipse.v - disc.v) / kPictures;
+    }
+    EXPECT_LT(mean.norm(), 0.2) << offset;
+  }
+}
+
 TEST(MovingEdgeTracker, AMissingDiscIsALossAndNoException) {
   RandomStream random(32, "missing");
   const Ellipse disc{50.0, 50.0, 18.0, 15.0, 0.0};

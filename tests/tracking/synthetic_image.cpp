@@ -213,6 +213,19 @@ void SyntheticImage::paint_clutter(int count, const std::vector<Ellipse>& keep_f
   }
 }
 
+void SyntheticImage::slope_light(double per_px, double angle) {
+  for (int v = 0; v < height_; ++v)
+    for (int u = 0; u < width_; ++u) {
+      const double along =
+          std::cos(angle) * (u - 0.5 * width_) + std::sin(angle) * (v - 0.5 * height_);
+      light_[pixel(u, v)] *= static_cast<float>(1.0 + per_px * along);
+    }
+}
+
+void SyntheticImage::expose_longer(double factor) {
+  for (float& light : light_) light *= static_cast<float>(factor);
+}
+
 vpImage<unsigned char> SyntheticImage::expose(double noise, RandomStream& random) const {
   vpImage<unsigned char> image(static_cast<unsigned>(height_), static_cast<unsigned>(width_));
   const std::vector<float>& normal = normal_table();

@@ -21,6 +21,12 @@ class SyntheticImage {
   /// Grain (value noise of two scales) and a slope of light, rms about @p amplitude.
   void add_texture(double amplitude, std::uint64_t seed);
 
+  /// Multiplies the light by 1 at the middle of the picture and a slope: @p per_px of it a pixel,
+  /// in the direction of @p angle.
+  void slope_light(double per_px, double angle);
+  /// Multiplies the light.
+  void expose_longer(double factor);
+
   /// Paints one shape that is inside where @p signed_distance (px) is positive.
   template <typename SignedDistance>
   void paint(const Ellipse& extent, double level, SignedDistance signed_distance) {

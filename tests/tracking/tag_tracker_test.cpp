@@ -1,18 +1,19 @@
 #include "vigia/tracking/tag_tracker.hpp"
 
-#include "side_fit.hpp"
+#include "tag_detector.hpp"
 #include "tracking/pattern_views.hpp"
+#include "tracking/photograph.hpp"
 
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <set>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include "vigia/core/angle.hpp"
+#include "vigia/core/error.hpp"
 
 namespace vigia::tracking::testing {
 namespace {
@@ -104,66 +105,188 @@ TEST_F(TagTracking, ATagAtTheBorderIsCutAndAnEmptyWallShowsNothing) {
   EXPECT_EQ(tracker.acquire(*frame, prediction(view)).status, FeatureStatus::not_found);
 }
 
-// Fisher's information of all pixels along an edge about its place and turn, with both levels and
-// the blur unknown but well known from 40 px on either side, summed without the closed form.
-TEST(CornerBound, IsThatOfAFittedEdgeAtItsEnd) {
-  constexpr double kContrast = 150.0;
-  constexpr double kNoise = 4.0;
-  constexpr int kLength = 48;
-  const double blur = std::sqrt(0.7 * 0.7 + 1.0 / 12.0);
-  using Normal = Eigen::Matrix<double, 5, 5>;
-  Normal information = Normal::Zero();
-  for (int row = 0; row < kLength; ++row)
-    for (int column = -40; column <= 40; ++column) {
-      const double along = row - 0.5 * (kLength - 1);
-      const double t = (column + 0.23) / blur;
-      const double density = std::exp(-0.5 * t * t) / std::sqrt(2.0 * kPi);
-      const double share = 0.5 * std::erfc(-t / std::sqrt(2.0));
-      const double slope = kContrast * density / blur;
-      Eigen::Matrix<double, 5, 1> row_of;
-      row_of << slope, slope * along, 1.0, share, slope * t;
-      information += row_of * row_of.transpose() / (kNoise * kNoise);
-    }
-  const Normal covariance = information.ldlt().solve(Normal::Identity());
-  const Eigen::Vector2d lever(1.0, 0.5 * kLength);
-  const double at_end = std::sqrt(lever.dot(covariance.topLeftCorner<2, 2>() * lever));
-  EXPECT_NEAR(corner_bound(kLength, kContrast, kNoise, blur) / at_end, 1.0, 0.02);
-}
+/// A photograph of one tag, its corners, and what is found in it.
+struct TagPhoto {
+  std::array<Eigen::Vector2d, 4> corners;
+  std::vector<PointsFeature> found;
+};
 
-TEST(TagAccuracy, CornersLieWithinTwiceTheBoundAndKnowTheirErrors) {
-  constexpr int kFrames = 150;
-  constexpr double kSidePx = 48.0;
-  // Contrast 150, noise 4, blur 0.7 px.
-  const LandmarkHall hall(TagShape{17, kSide},
-                          "contrast: 0, clutter_per_m2: 0, disc_grey: 60, plate_grey: 210");
-  RandomStream random(5, "tag accuracy");
+struct TagScene {
+  std::string family = "36h11";
+  int tag = 17;
+  double side_px = 60.0;
+  double quiet_zone = 1.0;
+  double covered = 0.0;  ///< share of the tag, at a corner
+  PhotoParams photo;
+
+  TagScene() {
+    // Contrast 150, noise 4, blur 0.7 px.
+    photo.fine = 4;
+    photo.light = photo.other_light = cv::Vec3f(0.745F, 0.745F, 0.745F);
+    photo.white = 1.0;
+    photo.noise = 4.0;
+  }
+
+  /// The whole grid, with its white rim cut to the quiet zone.
+  Print print() const {
+    TagDetector detector(family, 1.0, 0);
+    const TagGrid& grid = detector.grid(tag);
+    std::vector<std::vector<bool>> black;
+    for (int row = 0; row < grid.fields; ++row) {
+      black.emplace_back();
+      for (int column = 0; column < grid.fields; ++column)
+        black.back().push_back(!grid.is_white(column, row));
+    }
+    const double rim = 0.5 * (grid.fields - grid.border);
+    const double field = kSide / grid.border;
+    return [all = print_of_tag(black, field * grid.fields, 1.0),
+            half = 0.5 * kSide + field * (rim + quiet_zone - 1.0)](
+               double x, double y) -> std::optional<cv::Vec3f> {
+      if (std::max(std::abs(x), std::abs(y)) > half) return std::nullopt;
+      return all(x, y);
+    };
+  }
+
+  TagPhoto shoot(TagTracker& tracker, double slant, RandomStream& random) const {
+    const int size = (static_cast<int>(2.2 * side_px) + 40) / 2 * 2;
+    const SheetView view = view_of_sheet(
+        kSide, side_px, slant, random.uniform(-kPi, kPi), random.uniform(-kPi, kPi), 1200.0,
+        {0.5 * size + random.uniform(-1.0, 1.0), 0.5 * size + random.uniform(-1.0, 1.0)}, size,
+        size);
+    TagPhoto out;
+    const double h = 0.5 * kSide;
+    const std::array<Eigen::Vector2d, 4> at{Eigen::Vector2d(-h, -h), Eigen::Vector2d(h, -h),
+                                            Eigen::Vector2d(h, h), Eigen::Vector2d(-h, h)};
+    for (std::size_t k = 0; k < 4; ++k) out.corners[k] = view(at[k]);
+    std::vector<Sticker> stickers;
+    if (covered > 0.0) {
+      const float grey = static_cast<float>(random.uniform(0.05, 0.8));
+      stickers.push_back({at[random.index(4)], kSide * std::sqrt(covered), random.index(2) == 0,
+                          cv::Vec3f(grey, grey, grey)});
+    }
+    cv::Mat3f light = plain_wall(size, size, photo.fine, {0.25F, 0.25F, 0.25F});
+    lay_sheet(light, photo.fine, view, print(), stickers, random);
+    out.found = tracker.find_all(imaging::ImageFrame(grey_photograph(light, photo, random)));
+    return out;
+  }
+};
+
+struct CornerErrors {
+  int found = 0;
+  double rms = 0.0;
+  double nees = 0.0;   ///< per axis
+  double worst = 0.0;  ///< of a corner, in stated σ
+};
+
+CornerErrors corner_errors(const TagScene& scene, int photos, std::uint64_t seed) {
+  RandomStream random(seed, "corners");
   TagTracker tracker;
-  double squares = 0.0;
-  double nees = 0.0;
-  int count = 0;
-  for (int k = 0; k < kFrames; ++k) {
-    const PatternView view = view_of(hall.landmark(), kSidePx,
-                                     {random.uniform(-20.0, 20.0), random.uniform(-20.0, 20.0)},
-                                     0.0, random.uniform(0.05, 0.7));
-    const auto frame = hall.scene().expose(view.wMc, view.intrinsics, {k}, sim::ImagingParams{});
-    const auto found = tracker.find_all(*frame);
-    ASSERT_EQ(found.size(), 1U);
-    ASSERT_EQ(found[0].status, FeatureStatus::found);
-    const auto truth = corners_of(hall.landmark(), view);
-    for (std::size_t i = 0; i < 4; ++i) {
-      const Eigen::Vector2d error = found[0].points[i].uv - truth[i];
-      squares += error.squaredNorm();
-      nees += error.dot(found[0].points[i].covariance.inverse() * error);
-      count += 2;
+  CornerErrors errors;
+  for (int k = 0; k < photos; ++k) {
+    const TagPhoto photo = scene.shoot(tracker, random.uniform(0.0, 0.7), random);
+    for (const PointsFeature& feature : photo.found) {
+      if (feature.status != FeatureStatus::found) continue;
+      ++errors.found;
+      for (std::size_t i = 0; i < 4; ++i) {
+        const Eigen::Vector2d error = feature.points[i].uv - photo.corners[i];
+        const double square = error.dot(feature.points[i].covariance.inverse() * error);
+        errors.rms += error.squaredNorm();
+        errors.nees += square;
+        errors.worst = std::max(errors.worst, std::sqrt(square));
+      }
     }
   }
-  const double bound =
-      corner_bound(kSidePx, 150.0, std::sqrt(16.0 + 1.0 / 12.0), std::sqrt(0.49 + 1.0 / 12.0));
-  const double rms = std::sqrt(squares / count);
-  std::printf("corner rms %.4f px, bound %.4f px, NEES per axis %.3f\n", rms, bound, nees / count);
-  EXPECT_LE(rms, 2.0 * bound);
-  // 1200 squares of unit normals: standard error 0.041; four of them.
-  EXPECT_NEAR(nees / count, 1.0, 4.0 * 0.041);
+  errors.rms = std::sqrt(errors.rms / (8.0 * errors.found));
+  errors.nees /= 8.0 * errors.found;
+  return errors;
+}
+
+constexpr int kPhotos = 40;
+// The eight values of a tag go together: five standard errors of as many squares as tags count.
+const double kNeesLimit = 1.2 + 5.0 * std::sqrt(2.0 / (4.0 * kPhotos));
+
+TEST(TagAccuracy, CornersAreWithinAHundredthOfAPixelOrTwoAndKnowTheirErrors) {
+  const CornerErrors errors = corner_errors({}, kPhotos, 5);
+  std::printf("corner rms %.4f px, NEES per axis %.3f\n", errors.rms, errors.nees);
+  EXPECT_EQ(errors.found, kPhotos);
+  EXPECT_LE(errors.rms, 0.015);
+  EXPECT_LT(errors.nees, kNeesLimit);
+  EXPECT_GT(errors.nees, 0.6);
+}
+
+struct TagChange {
+  const char* name;
+  void (*change)(TagScene&);
+};
+
+class TagUnder : public ::testing::TestWithParam<TagChange> {};
+
+TEST_P(TagUnder, CornersKnowTheirErrors) {
+  TagScene scene;
+  GetParam().change(scene);
+  const CornerErrors errors = corner_errors(scene, kPhotos, 6);
+  EXPECT_GE(errors.found, kPhotos * 9 / 10);
+  EXPECT_LT(errors.nees, kNeesLimit);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Conditions, TagUnder,
+    ::testing::Values(TagChange{"ASlopeOfLight",
+                                [](TagScene& s) {
+                                  s.photo.light_slope = {0.2 / 150, 0.0};
+                                }},
+                      TagChange{"BlurOfTwoPixels", [](TagScene& s) { s.photo.blur_px = 2.0; }},
+                      TagChange{"ASideOfTwentyFourPixels", [](TagScene& s) { s.side_px = 24.0; }},
+                      TagChange{"AQuietZoneOfHalfAField", [](TagScene& s) { s.quiet_zone = 0.5; }},
+                      TagChange{
+                          "AResponseAfterTheBlur",
+                          [](TagScene& s) { s.photo.response = PhotoParams::Response::srgb; }}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+TEST(CoveredTags, AreRefusedOrTheirCornersAreRight) {
+  TagScene scene;
+  for (const double share : {0.01, 0.05, 0.15}) {
+    scene.covered = share;
+    const CornerErrors errors = corner_errors(scene, 20, 7);
+    EXPECT_LT(errors.found == 0 ? 0.0 : errors.worst, 5.0 * std::sqrt(2.0)) << share;
+  }
+}
+
+class TagFamilies : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(TagFamilies, AreReadWithCornersInTheReadersOrder) {
+  TagScene scene;
+  scene.family = GetParam();
+  scene.tag = 3;
+  scene.quiet_zone = 1.0;
+  scene.side_px = 80.0;
+  TagTrackerParams params;
+  params.family = scene.family;
+  TagTracker tracker({}, params);
+  RandomStream random(8, "families");
+  const TagPhoto photo = scene.shoot(tracker, 0.3, random);
+  ASSERT_EQ(photo.found.size(), 1U);
+  ASSERT_EQ(photo.found[0].status, FeatureStatus::found);
+  EXPECT_EQ(std::get<int>(*photo.found[0].code), 3);
+  for (std::size_t i = 0; i < 4; ++i)
+    EXPECT_LE((photo.found[0].points[i].uv - photo.corners[i]).norm(), 0.15) << i;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, TagFamilies,
+                         ::testing::Values("36h11", "25h9", "16h5", "Standard41h12"),
+                         [](const auto& test) { return "Tag" + std::string(test.param); });
+
+TEST(TagFamily, AnUnknownOneIsNamedWithTheKnownOnes) {
+  TagTrackerParams params;
+  params.family = "36h12";
+  try {
+    TagTracker tracker({}, params);
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(),
+                 "there is no tag family '36h12'; known are '36h11', '25h9', '16h5', "
+                 "'Standard41h12'");
+  }
 }
 
 TEST(RealTags, AreReadOnTheDetectorsBenchmarkPicture) {

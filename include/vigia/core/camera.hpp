@@ -48,7 +48,8 @@ struct ZoomSample {
 /// increasing with zoom_mm. Of one sample: a lens that does not zoom.
 class ZoomCalibration {
  public:
-  ZoomCalibration() = default;
+  /// One sample: a lens of 700 px.
+  ZoomCalibration();
   /// At least one sample. Throws std::invalid_argument unless zoom_mm and px strictly increase.
   ZoomCalibration(int width, int height, double u0, double v0, std::vector<ZoomSample> samples);
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -117,6 +118,8 @@ class MapReader {
   /// written) that holds it; a file's content takes the place of its name in the tree.
   MapReader map_or_file(const std::string& key);
 
+  /// The key stands here only where @p words hold, which they do not: finish() says so of it.
+  void only_where(const std::string& key, const std::string& words);
   /// Throws InputError for the first key that no getter asked for, and names a near one.
   void finish() const;
 
@@ -135,6 +138,7 @@ class MapReader {
   std::shared_ptr<ConfigNode> node_;
   std::string what_;
   mutable std::set<std::string> asked_;
+  std::map<std::string, std::string> conditions_;  ///< of keys that do not hold
 };
 
 }  // namespace vigia

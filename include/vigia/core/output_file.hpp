@@ -15,6 +15,8 @@ class OutputFile {
   explicit OutputFile(std::filesystem::path path);
 
   void write(std::string_view bytes);
+  /// Hands what was written to the system: it stays when this program ends suddenly.
+  void flush();
   /// Flushes and closes; what was written is on its way to the disk without error.
   void close();
 

@@ -227,7 +227,7 @@ class ParamReader : public ParamVisitor {
   void map_or_file(const char* key, const About& about, const Describe& describe_map) override;
   void each(const char* key, const About& about, const Describe& describe_item) override;
   void require(bool holds, const char* key, const std::string& message) override;
-  MapReader* reader() const override { return maps_.back(); }
+  MapReader* reader() const override { return absent_ == nullptr ? maps_.back() : nullptr; }
 
  protected:
   void field(const char* key, const Field& field, const About& about) override;
@@ -237,8 +237,11 @@ class ParamReader : public ParamVisitor {
  private:
   MapReader& here() { return *maps_.back(); }
   void below(MapReader map, const Describe& describe_map);
+  /// Notes a key of where() that does not hold.
+  void note_absent(const char* key) { here().only_where(key, *absent_); }
 
-  std::vector<MapReader*> maps_;  ///< from the top down to the one that is read
+  const std::string* absent_ = nullptr;  ///< what does not hold where keys are only noted
+  std::vector<MapReader*> maps_;         ///< from the top down to the one that is read
 };
 
 /// Reads all keys of a map into @p params. Throws InputError.

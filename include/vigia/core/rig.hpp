@@ -35,7 +35,7 @@ std::optional<ZoomCalibration> zoom_calibration(const Optics& optics);
 struct Camera {
   CameraId id = 0;
   CameraMount mount;
-  Optics optics = CameraModel{};
+  Optics optics = ZoomCalibration{};
   double period_s = 0.0;   ///< between two exposures; 0: one in every tick
   double phase_s = 0.0;    ///< of the first exposure
   double latency_s = 0.0;  ///< from the middle of the exposure to the delivery
@@ -74,6 +74,6 @@ struct RigOnGround {
 };
 
 /// The rig of one camera, of id 0, on a head.
-Rig head_rig(const HeadGeometry& geometry, Optics optics = CameraModel{});
+Rig head_rig(const HeadGeometry& geometry, Optics optics = ZoomCalibration{});
 
 }  // namespace vigia

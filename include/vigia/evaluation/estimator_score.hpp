@@ -65,6 +65,8 @@ struct EstimatorSetup {
   OdometryNoise odometry;  ///< of the wheels, as it truly is
   SensorNoise sensor;      ///< of the head's and the zoom's readings, as it truly is
   Eigen::Matrix3d prior_covariance = Eigen::Matrix3d::Zero();  ///< of (x, y, θ) at the start
+  bool prior =
+      true;  ///< whether the localizer was told; if not, its errors count from the first fix
 };
 
 /// Scores one localizer of a drive, simulated or recorded, by what an estimator's ticks hold:
@@ -89,11 +91,16 @@ class EstimatorScorer {
   PosteriorBound bound_;
   LossScorer losses_;
   LocalizerScore score_;
-  int ticks_ = 0;  ///< with the truth
-  double squared_position_ = 0.0;
-  double squared_heading_ = 0.0;
-  double nees_ = 0.0;
-  double bound_trace_ = 0.0;
+  /// Over ticks with the truth.
+  struct Sums {
+    int ticks = 0;
+    double squared_position = 0.0;
+    double squared_heading = 0.0;
+    double nees = 0.0;
+    double bound_trace = 0.0;
+  };
+  Sums sums_;
+  bool fixed_ = false;  ///< has known where it is
 };
 
 }  // namespace vigia::evaluation

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <string_view>
 
 #include "vigia/imaging/frame.hpp"
 
@@ -25,6 +27,9 @@ class ImageFrame : public Frame {
 /// Reads a picture file (PNG, JPEG, PGM, PPM, …). Throws InputError when the file is missing, is no
 /// picture, or ends early.
 ImageFrame read_image(const std::filesystem::path& file);
+
+/// Decodes the bytes of such a file. @p name stands for it in messages. Throws InputError.
+ImageFrame decode_picture(std::string_view bytes, const std::string& name);
 
 /// Writes a PNG, aside first and then renamed, so that no half-written file stays. Throws
 /// InputError when it can't be written.

@@ -27,8 +27,8 @@ struct BearingOnlyParams {
   int lost_rejections = 10;   ///< lost after so many unexplained images in a row …
   int lost_looks = 2;         ///< … in at least so many looks
 
-  int search_looks = 8;        ///< a lost robot remembers the bearings of so many looks …
-  int min_looks = 4;           ///< … and needs so many that one pose explains
+  int search_looks = 12;       ///< a lost robot remembers the bearings of so many looks …
+  int min_looks = 10;          ///< … and needs so many that one pose explains
   double found_weight = 0.99;  ///< found when one pose has at least this share of the weight
   double clutter_cost = 8.0;   ///< −ln of how likely a look is at no landmark of the map
   double max_range_m = 15.0;   ///< to a landmark that a lost robot may see

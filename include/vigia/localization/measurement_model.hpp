@@ -63,9 +63,10 @@ class MeasurementModel {
   const LandmarkMap& map() const { return map_; }
   const RigOnGround& on_ground() const { return on_ground_; }
   const MeasurementParams& params() const { return params_; }
-  /// Whether the camera's images of one look share errors of pan, tilt and focal length: one on a
-  /// head. A fixed camera has none, H is zero there.
-  bool has_look_biases(CameraId camera) const;
+  /// Which errors the camera's images of one look share, 1 or 0 each: pan and tilt of one on a
+  /// head, the focal length of one there that zooms. H is zero in the columns of the others.
+  Eigen::Array3d look_biases(CameraId camera) const;
+  bool has_look_biases(CameraId camera) const { return look_biases(camera).any(); }
   /// Whether a wall stands between the two points.
   bool hides(const Eigen::Vector3d& from_w, const Eigen::Vector3d& to_w) const;
   /// The χ² that a right measurement stays below with params().gate_probability.

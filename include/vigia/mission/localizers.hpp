@@ -13,7 +13,8 @@ namespace vigia::mission {
 /// Where a localizer has its first pose from, where the mission gives no prior.
 enum class FirstPose {
   prior,     ///< it cannot start without one
-  recovery,  ///< from the recovery, if it is the primary
+  recovery,  ///< from the recovery, if it is the primary and the head directs a camera
+  looks,     ///< from looks, if the head directs a camera
   itself,    ///< it finds itself
 };
 

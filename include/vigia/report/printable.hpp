@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <variant>
 
 #include <Eigen/Core>
@@ -19,12 +20,18 @@ struct PrintedPage {
   Eigen::Vector2d centre_m = Eigen::Vector2d::Zero();  ///< of the landmark, from the upper left
   double half_width_m = 0.0;                           ///< of the landmark's sheet
 };
-PrintedPage printed_page(const LandmarkShape& shape);
+/// On a sheet of @p paper, upright, the page is that sheet.
+enum class Paper { a4, a3, letter };
+PrintedPage printed_page(const LandmarkShape& shape, std::optional<Paper> paper = {});
+
+/// The landmark as large as @p paper takes it.
+LandmarkShape fitted_to(const LandmarkShape& shape, Paper paper);
 
 /// Prints a landmark to a .svg, .pdf or .png file. A PNG has @p dpi pixels an inch and says so.
-/// Throws InputError for another ending, for a PNG that is too large, and when the file cannot be
-/// written; std::invalid_argument for a code or tag outside its range.
+/// Throws InputError for another ending, for a PNG that is too large, for a landmark that is larger
+/// than the paper, and when the file cannot be written; std::invalid_argument for a code or tag
+/// outside its range.
 void print_landmark(const LandmarkShape& shape, const std::filesystem::path& file,
-                    double dpi = 300.0);
+                    double dpi = 300.0, std::optional<Paper> paper = {});
 
 }  // namespace vigia::report

@@ -22,8 +22,10 @@ struct CorrelationTrackerParameters {
   /// Largest distance of the matched centre from that of the outline alone, px; more means that
   /// something covers a part.
   double max_outline_offset_px = 0.5;
-  int max_iterations = 12;       ///< of the refinement
-  DiscTrackerParameters finder;  ///< how find_all finds its seeds, and the polarity
+  int max_iterations = 12;  ///< of the refinement
+  /// How find_all finds its seeds, the polarity, and whether a slope of light and covered sectors
+  /// of the outline are kept out of the match (robust).
+  DiscTrackerParameters finder;
 };
 
 /// Tracks a disc by normalised grey-scale correlation (Armingol §4, eqs. 2 and 3, the indices of

@@ -39,6 +39,12 @@ struct DiscTrackerParameters {
   /// deviations of the prediction.
   double max_scale_step = 0.3;
   double gate_sigmas = 3.5;
+  /// Whether to reckon with what rooms and cameras add: a slope of light beside the outline and
+  /// levels that are cut off (both are kept out of the fit), discs of which a part is covered (they
+  /// are found, and EllipseFeature::visible says so), strong noise, things that only look like a
+  /// disc in their middle.
+  bool robust = false;
+  double min_visible = 0.8;  ///< share of the outline that a covered disc must show
 };
 
 /// Tracks a disc: vpDot2 from frame to frame, then the outline is fitted to the grey values by

@@ -20,6 +20,8 @@ struct EllipseFeature {
   Eigen::Matrix<double, 5, 5> covariance = Eigen::Matrix<double, 5, 5>::Identity();
   double contrast = 0.0;  ///< ground minus disc, grey levels; negative: bright on dark
   double score = 0.0;     ///< tracker's own quality in [0, 1]
+  double visible = 1.0;   ///< share of the outline that agrees; less than 1: partly covered
+  double clipped = 0.0;   ///< share of the outline's pixels that are at 0 or 255
 };
 
 /// Where the image of a landmark is expected.

@@ -8,7 +8,7 @@
 
 namespace vigia::tracking {
 
-struct PatternTrackerParameters {
+struct PatternTrackerParams {
   double min_contrast = 20.0;  ///< between dots and paper, grey levels of the luma
   /// Smallest share of a dot's outline that must agree with a blurred ellipse.
   double min_agreement = 0.9;
@@ -34,7 +34,7 @@ struct PatternTrackerParameters {
 class PatternTracker : public PointTracker {
  public:
   explicit PatternTracker(const KnownCodes& known = {},
-                          const PatternTrackerParameters& parameters = {});
+                          const PatternTrackerParams& parameters = {});
   ~PatternTracker() override;
 
   std::string_view name() const override { return "pattern"; }

@@ -1,0 +1,35 @@
+#include "overlay_window.hpp"
+
+#include <visp3/core/vpDisplayException.h>
+#include <visp3/core/vpMouseButton.h>
+#include <visp3/gui/vpDisplayX.h>
+
+#include "vigia/core/error.hpp"
+
+namespace vigia::app {
+
+OverlayWindow::OverlayWindow() = default;
+OverlayWindow::~OverlayWindow() = default;
+
+void OverlayWindow::show(const vpImage<vpRGBa>& picture) {
+  const bool same_size =
+      picture.getWidth() == picture_.getWidth() && picture.getHeight() == picture_.getHeight();
+  picture_ = picture;
+  try {
+    if (!display_ || !same_size) {
+      display_.reset();
+      display_ = std::make_unique<vpDisplayX>(picture_, -1, -1, "vigia track");
+    }
+    vpDisplay::display(picture_);
+    vpDisplay::flush(picture_);
+    vpImagePoint at;
+    vpMouseButton::vpMouseButtonType button = vpMouseButton::none;
+    closed_ = vpDisplay::getClick(picture_, at, button, false) && button == vpMouseButton::button3;
+  } catch (const vpException&) {
+    throw InputError(
+        "--view: no X display can be opened; without --view, --out writes the "
+        "overlay pictures");
+  }
+}
+
+}  // namespace vigia::app
