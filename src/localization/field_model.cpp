@@ -212,7 +212,7 @@ double FieldModel::line_evidence(const std::vector<FieldPoint>& points, const Po
       shares.emplace_back(i, density);
       total += density;
     }
-    const double gain = std::min(params_.point_price, std::log(total / off_lines));
+    const double gain = std::log(total / off_lines);
     for (const auto& [line, density] : shares) of_line[line] += density / total * gain;
   }
   double sum = 0.0;

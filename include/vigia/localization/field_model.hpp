@@ -20,8 +20,6 @@ struct FieldModelParams {
   /// Most that the points on one line count for between poses far apart, nats: the price of a
   /// straight line that the map lacks and that would explain them as well.
   double line_price = 10.0;
-  /// Most that one point counts for there, so that one by chance on a line is not yet the line.
-  double point_price = 2.5;
 };
 
 /// The sum over a scan's points at a pose.
@@ -62,7 +60,7 @@ class FieldModel {
                                double clutter, double spread_m = 0.0) const;
   /// Log-evidence for a pose against others far from it, where what is false may lie on straight
   /// lines: how much better than clutter the map explains the points, Σ_j min(line_price, Σ_i r_ij
-  /// min(point_price, log(Λ_i/c_i))) over the lines j, r_ij the share of line j in point i. Within a hypothesis the
+  /// log(Λ_i/c_i)) over the lines j, r_ij the share of line j in point i. Within a hypothesis the
   /// likelihood is right; between hypotheses it takes the points of one false line for as many
   /// independent facts.
   double line_evidence(const std::vector<FieldPoint>& points, const Pose2& pose,
