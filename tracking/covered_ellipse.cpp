@@ -68,10 +68,7 @@ double share_on(const EllipseShape& shape, const Outline& outline) {
   const Eigen::Matrix2d inverse = shape.sigma.inverse();
   int on = 0;
   for (const Eigen::Vector2d& point : outline.points) {
-    const Eigen::Vector2d p = point - shape.centre;
-    const Eigen::Vector2d gradient = inverse * p;
-    const double level = std::sqrt(p.dot(gradient));
-    const double distance = (1.0 - level) * level / std::max(gradient.norm(), 1e-9);
+    const double distance = depth_in(inverse, point - shape.centre);
     on += std::abs(distance) * outline.size < kOnOutline ? 1 : 0;
   }
   return static_cast<double>(on) / static_cast<double>(outline.points.size());

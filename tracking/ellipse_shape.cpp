@@ -41,6 +41,12 @@ double size_of(const EllipseShape& shape) {
   return std::sqrt(std::sqrt(shape.sigma.determinant()));
 }
 
+double depth_in(const Eigen::Matrix2d& inverse, const Eigen::Vector2d& offset) {
+  const Eigen::Vector2d gradient = inverse * offset;
+  const double level = std::sqrt(offset.dot(gradient));
+  return (1.0 - level) * level / std::max(gradient.norm(), 1e-9);
+}
+
 Eigen::Vector2d half_extent(const EllipseShape& shape) {
   return {std::sqrt(shape.sigma(0, 0)), std::sqrt(shape.sigma(1, 1))};
 }

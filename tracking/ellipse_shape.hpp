@@ -20,6 +20,10 @@ Ellipse ellipse_of(const EllipseShape& shape);
 /// √(ab), px.
 double size_of(const EllipseShape& shape);
 
+/// Signed distance, to first order, of a point from the ellipse's outline, positive inside, px:
+/// @p offset is from the ellipse's centre, @p inverse is Σ⁻¹.
+double depth_in(const Eigen::Matrix2d& inverse, const Eigen::Vector2d& offset);
+
 /// Half width and half height of the upright rectangle round the ellipse.
 Eigen::Vector2d half_extent(const EllipseShape& shape);
 

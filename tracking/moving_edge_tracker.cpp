@@ -52,9 +52,7 @@ double scatter_of(EdgeSites& sites, const EllipseShape& shape) {
     if (site.getState() != vpMeSite::NO_SUPPRESSION) continue;
     const Eigen::Vector2d p(site.get_jfloat() - shape.centre.x(),
                             site.get_ifloat() - shape.centre.y());
-    const Eigen::Vector2d gradient = inverse * p;
-    const double level = std::sqrt(p.dot(gradient));
-    const double d = (1.0 - level) * level / std::max(gradient.norm(), 1e-9);
+    const double d = depth_in(inverse, p);
     sum += d * d;
     ++count;
   }
@@ -93,10 +91,7 @@ std::optional<EllipseShape> arc_ellipse(const Blob& blob) {
   const Eigen::Matrix2d inverse = shape.sigma.inverse();
   double squares = 0.0;
   for (const Eigen::Vector2d& point : blob.arc) {
-    const Eigen::Vector2d p = point - shape.centre;
-    const Eigen::Vector2d gradient = inverse * p;
-    const double level = std::sqrt(p.dot(gradient));
-    const double d = (1.0 - level) * level / std::max(gradient.norm(), 1e-9);
+    const double d = depth_in(inverse, point - shape.centre);
     squares += d * d;
   }
   constexpr double kRagged = 0.7;  // px rms; whole pixels alone make 0.3

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "vigia/core/error.hpp"
@@ -135,6 +136,7 @@ double TagDetector::confidence_of(int wrong_bits) const {
 
 std::vector<std::string> tag_families() {
   std::vector<std::string> names;
+  names.reserve(std::size(kFamilies));
   for (const TagFamily& family : kFamilies) names.emplace_back(family.name);
   return names;
 }

@@ -17,7 +17,8 @@ struct TagGrid {
   std::vector<std::uint8_t> white;  ///< 1: white, 0: black
 
   bool is_white(int column, int row) const {
-    return white[static_cast<std::size_t>(row * fields + column)] != 0;
+    const int field = row * fields + column;
+    return white[static_cast<std::size_t>(field)] != 0;
   }
 };
 

@@ -12,14 +12,8 @@ namespace {
 
 PatternShape pattern_of_sheet(const PatternCode& code, double side_m) {
   PatternShape shape;
-  const double scale = 0.5 * side_m / shape.sheet_half_width_m;
   shape.code = code;
-  shape.outer_radius_m *= scale;
-  shape.inner_radius_m *= scale;
-  shape.dot_radius_m *= scale;
-  shape.centre_radius_m *= scale;
-  shape.sheet_half_width_m *= scale;
-  return shape;
+  return scaled(shape, 0.5 * side_m / shape.sheet_half_width_m);
 }
 
 bool says(const Landmark& landmark, const tracking::LandmarkCode& code) {

@@ -58,6 +58,15 @@ PatternCode decode(const PatternColours& colours) {
   return code;
 }
 
+PatternShape scaled(PatternShape shape, double scale) {
+  shape.outer_radius_m *= scale;
+  shape.inner_radius_m *= scale;
+  shape.dot_radius_m *= scale;
+  shape.centre_radius_m *= scale;
+  shape.sheet_half_width_m *= scale;
+  return shape;
+}
+
 std::vector<PatternDot> pattern_dots(const PatternShape& shape) {
   const PatternColours colours = encode(shape.code);
   std::vector<PatternDot> dots{{0, Eigen::Vector2d::Zero(), shape.centre_radius_m, colours.centre}};

@@ -181,14 +181,7 @@ struct Scaled {
     disc.radius_m *= scale;
     return disc;
   }
-  LandmarkShape operator()(PatternShape shape) const {
-    shape.outer_radius_m *= scale;
-    shape.inner_radius_m *= scale;
-    shape.dot_radius_m *= scale;
-    shape.centre_radius_m *= scale;
-    shape.sheet_half_width_m *= scale;
-    return shape;
-  }
+  LandmarkShape operator()(const PatternShape& pattern) const { return scaled(pattern, scale); }
   LandmarkShape operator()(TagShape tag) const {
     tag.side_m *= scale;
     return tag;

@@ -62,6 +62,9 @@ PatternColours encode(const PatternCode& code);
 /// Throws std::invalid_argument otherwise.
 PatternCode decode(const PatternColours& colours);
 
+/// The same code on a sheet that is @p scale times as large, all measures alike.
+PatternShape scaled(PatternShape shape, double scale);
+
 /// All dots of a pattern, in the order of their labels.
 std::vector<PatternDot> pattern_dots(const PatternShape& shape);
 
