@@ -161,8 +161,10 @@ std::vector<FieldMatcher::Suggestion> FieldMatcher::match(const FieldScan& scan)
   rough.spread_m = 0.15;
   rough.iterations = 12;
   rough.converged = 1e-3;
+  const std::vector<StraightGroup> groups = model_->groups_of(scan);
   const auto add = [&](const FieldFix& fix) {
-    const double log_evidence = log_evidence_of(*model_, scan, fix, model_->params().clutter);
+    const double log_evidence =
+        log_evidence_of(*model_, scan, groups, fix, model_->params().clutter);
     for (Suggestion& other : found)
       if (same_pose(other.fix.pose, fix.pose, params_.same_m, params_.same_rad)) {
         if (log_evidence > other.log_evidence) other = {fix, log_evidence, 0.0};

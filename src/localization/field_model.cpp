@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <utility>
 
 #include "vigia/core/angle.hpp"
 #include "vigia/core/plane_geometry.hpp"
@@ -193,30 +192,31 @@ double FieldModel::log_likelihood(const std::vector<FieldPoint>& points, const P
   return sum;
 }
 
-double FieldModel::line_evidence(const std::vector<FieldPoint>& points, const Pose2& pose,
+double FieldModel::line_evidence(const std::vector<FieldPoint>& points,
+                                 const std::vector<StraightGroup>& groups, const Pose2& pose,
                                  double clutter) const {
   const Turn turn(pose);
   const double c = clutter_density(clutter);
   const double floor_variance = params_.floor_m * params_.floor_m;
-  const std::vector<FieldLine>& lines = distance_.lines();
-  std::vector<double> of_line(lines.size(), 0.0);
-  std::vector<std::pair<std::uint16_t, double>> shares;
-  for (const FieldPoint& point : points) {
-    const PlacedPoint placed = placed_at(point, turn);
-    const double off_lines = c * point.p_r.norm();
-    double total = off_lines;
-    shares.clear();
-    for (const std::uint16_t i : distance_.near(placed.p_w)) {
-      const double density = line_share(lines[i], placed, floor_variance).density;
-      if (density <= 0.0) continue;
-      shares.emplace_back(i, density);
-      total += density;
-    }
-    const double gain = std::log(total / off_lines);
-    for (const auto& [line, density] : shares) of_line[line] += density / total * gain;
-  }
+  std::vector<double> gain;
+  gain.reserve(points.size());
+  for (const FieldPoint& point : points)
+    gain.push_back(std::log1p(density_on_lines(distance_, placed_at(point, turn), floor_variance) /
+                              (c * point.p_r.norm())));
   double sum = 0.0;
-  for (const double gain : of_line) sum += std::min(params_.line_price, gain);
+  for (const StraightGroup& group : groups) {
+    double by_map = 0.0;
+    double by_itself = -params_.line_price;
+    for (std::size_t k = 0; k < group.points.size(); ++k) {
+      const std::size_t i = group.points[k];
+      by_map += gain[i];
+      by_itself += std::log1p(group.line_densities[k] / (c * points[i].p_r.norm()));
+      gain[i] = 0.0;
+    }
+    const double higher = std::max(by_map, by_itself);
+    sum += higher + std::log1p(std::exp(std::min(by_map, by_itself) - higher));
+  }
+  for (const double alone : gain) sum += alone;
   return sum;
 }
 

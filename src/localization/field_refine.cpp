@@ -136,10 +136,11 @@ FieldFix refine_field_pose(const FieldModel& model, const std::vector<FieldPoint
   return fix;
 }
 
-double log_evidence_of(const FieldModel& model, const FieldScan& scan, const FieldFix& fix,
+double log_evidence_of(const FieldModel& model, const FieldScan& scan,
+                       const std::vector<StraightGroup>& groups, const FieldFix& fix,
                        double clutter) {
   const double log_volume = 0.5 * std::log((2.0 * kPi * fix.covariance).determinant());
-  return model.line_evidence(scan.points, fix.pose, clutter) +
+  return model.line_evidence(scan.points, groups, fix.pose, clutter) +
          model.log_likelihood_of_sightings(scan, fix.pose) + fix.log_prior + log_volume;
 }
 

@@ -22,6 +22,12 @@ bool same_hypothesis(const Pose2& a, const Pose2& b) {
   return d.head<2>().norm() < kSameHypothesis_m && std::abs(d.z()) < kSameTurn;
 }
 
+/// Whether a pose lies within a prior's 4σ.
+bool could_be(const Prior& prior, const Pose2& pose) {
+  const Eigen::Vector3d off = difference(pose, prior.pose);
+  return off.dot(prior.covariance.ldlt().solve(off)) < 16.0;
+}
+
 }  // namespace
 
 FieldTracker::FieldTracker(const FieldModel& model, const FieldTrackerParams& params)
@@ -49,25 +55,40 @@ void FieldTracker::predict(const OdometryIncrement& increment) {
   refresh_belief();
 }
 
-void FieldTracker::refine_all(const FieldScan& scan) {
+void FieldTracker::refine_all(const FieldScan& scan, const std::vector<StraightGroup>& groups,
+                              const Matches& matches) {
   FieldRefineParams fixed;
   fixed.clutter = clutter_;
   for (Hypothesis& hypothesis : hypotheses_) {
-    Eigen::Matrix3d covariance = hypothesis.covariance + 1e-10 * Eigen::Matrix3d::Identity();
-    const FieldFix fix = refine_field_pose(*model_, scan.points, hypothesis.pose,
-                                           Prior{hypothesis.pose, covariance}, fixed);
-    if (fix.status == FieldFixStatus::degenerate) continue;
-    hypothesis.pose = fix.pose;
-    hypothesis.covariance = fix.covariance;
-    hypothesis.log_weight += log_evidence_of(*model_, scan, fix, clutter_);
+    const Prior prior{hypothesis.pose, hypothesis.covariance + 1e-10 * Eigen::Matrix3d::Identity()};
+    // From where it is believed, and from where the image has it: the nearer peak of the likelihood
+    // need not be the higher one.
+    std::optional<FieldFix> best;
+    double evidence = 0.0;
+    const auto refine_from = [&](const Pose2& start) {
+      const FieldFix fix = refine_field_pose(*model_, scan.points, start, prior, fixed);
+      if (fix.status == FieldFixStatus::degenerate) return;
+      const double of_fix = log_evidence_of(*model_, scan, groups, fix, clutter_);
+      if (best && of_fix <= evidence) return;
+      best = fix;
+      evidence = of_fix;
+    };
+    refine_from(prior.pose);
+    for (const auto& match : matches)
+      if (could_be(prior, match.fix.pose)) refine_from(match.fix.pose);
+    if (!best) continue;
+    hypothesis.pose = best->pose;
+    hypothesis.covariance = best->covariance;
+    hypothesis.log_weight += evidence;
   }
 }
 
-void FieldTracker::add_matches(const FieldScan& scan) {
+void FieldTracker::add_matches(const FieldScan& scan, const std::vector<StraightGroup>& groups,
+                               const Matches& matches) {
   const FieldMap& map = model_->map();
   const double log_density = -std::log(map.length_m * map.width_m * 2.0 * kPi);
   const double log_prior = (hypotheses_.empty() ? 0.0 : std::log(params_.kidnapped)) + log_density;
-  for (const auto& suggestion : matcher_.match(scan)) {
+  for (const auto& suggestion : matches) {
     const bool known =
         std::any_of(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& hypothesis) {
           return same_hypothesis(hypothesis.pose, suggestion.fix.pose);
@@ -78,8 +99,8 @@ void FieldTracker::add_matches(const FieldScan& scan) {
     const FieldFix fix =
         refine_field_pose(*model_, scan.points, suggestion.fix.pose, std::nullopt, fixed);
     if (fix.status == FieldFixStatus::degenerate) continue;
-    hypotheses_.push_back(
-        {fix.pose, fix.covariance, log_prior + log_evidence_of(*model_, scan, fix, clutter_)});
+    hypotheses_.push_back({fix.pose, fix.covariance,
+                           log_prior + log_evidence_of(*model_, scan, groups, fix, clutter_)});
   }
 }
 
@@ -113,12 +134,17 @@ void FieldTracker::update(const FieldScan& scan) {
   double sum = 0.0;
   for (const Hypothesis& hypothesis : hypotheses_) sum += std::exp(hypothesis.log_weight);
   for (Hypothesis& hypothesis : hypotheses_) hypothesis.log_weight -= std::log(sum);
-  refine_all(scan);
   ++since_check_;
   const bool unsure = belief_.status != BeliefStatus::tracking && since_check_ >= 3;
-  if (hypotheses_.empty() || since_check_ >= params_.check_every || unsure ||
-      (evidence_has_fallen() && since_check_ >= 2)) {
-    add_matches(scan);
+  const bool check = hypotheses_.empty() || since_check_ >= params_.check_every || unsure ||
+                     (evidence_has_fallen() && since_check_ >= 2);
+  // One hypothesis alone needs no weight.
+  std::vector<StraightGroup> groups;
+  if (check || hypotheses_.size() > 1) groups = model_->groups_of(scan);
+  const Matches matches = check ? matcher_.match(scan) : Matches{};
+  refine_all(scan, groups, matches);
+  if (check) {
+    add_matches(scan, groups, matches);
     since_check_ = 0;
   }
   merge_and_prune();

@@ -457,10 +457,11 @@ void Mcl::correct_between_clusters(const FieldScan& scan) {
     std::size_t& best = likeliest[clusters.of[i]];
     if (log_likelihoods_[i] > log_likelihoods_[best]) best = i;
   }
+  const std::vector<StraightGroup> groups = model_->groups_of(scan);
   std::vector<double> corrections;
   for (const std::size_t i : likeliest) {
     const Pose2& pose = particles_[i].pose;
-    corrections.push_back(model_->line_evidence(scan.points, pose, clutter_) -
+    corrections.push_back(model_->line_evidence(scan.points, groups, pose, clutter_) -
                           model_->log_likelihood(scan.points, pose, clutter_));
   }
   const double least = *std::min_element(corrections.begin(), corrections.end());
@@ -510,7 +511,7 @@ void Mcl::update(const FieldScan& scan) {
 void Mcl::widen_depleted(const FieldScan& scan) {
   // So few particles say nothing of the spread: the image's own covariance stands in for it.
   resample();
-  const Pose2& pose = clusters_of(particles_, 1).all.front().pose;
+  const Pose2 pose = clusters_of(particles_, 1).all.front().pose;
   const Eigen::Matrix3d information =
       model_->linearise(scan.points, pose, clutter_).complete + Eigen::Matrix3d::Identity();
   const Eigen::Matrix3d root = Eigen::Matrix3d(information.inverse()).llt().matrixL();

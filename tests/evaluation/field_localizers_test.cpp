@@ -177,7 +177,7 @@ TEST(Murea, ShortOfCellsItGivesACoarserAnswer) {
   const FieldFrame frame = draw_field_frame(map, {}, {1.0, 1.0, 0.5}, random);
   localization::MureaParams params;
   const auto fine = localization::Murea(model, params).locate(frame.scan);
-  params.cell_budget = 15000;
+  params.cell_budget = fine.cells / 2;
   const auto coarse = localization::Murea(model, params).locate(frame.scan);
   EXPECT_TRUE(coarse.found);
   EXPECT_GT(coarse.cell_m, fine.cell_m);

@@ -5,6 +5,7 @@
 #include "vigia/core/field_map.hpp"
 #include "vigia/core/pose.hpp"
 #include "vigia/localization/field_scan.hpp"
+#include "vigia/localization/straight_groups.hpp"
 
 namespace vigia::localization {
 
@@ -17,15 +18,17 @@ struct FieldModelParams {
   double floor_m = 0.002;
   /// Probability that a goal or post is not what its colour says.
   double sighting_outliers = 0.02;
-  /// Most that the points on one line count for between poses far apart, nats: the price of a
-  /// straight line that the map lacks and that would explain them as well.
+  /// What a straight line that the map lacks costs, nats: between poses far apart, the points on
+  /// one line count for no more.
   double line_price = 10.0;
 };
 
 /// The sum over a scan's points at a pose.
 struct FieldLinearisation {
   double log_likelihood = 0.0;
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();  ///< of it by (x, y, θ)
+  /// Of it by (x, y, θ), but for how the incidence of rays, the points' spread across a line and
+  /// the share of it between the line's ends change: they teach little beside the offsets.
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
   Eigen::Matrix3d complete = Eigen::Matrix3d::Zero();  ///< information, were each point's
                                                        ///< line known (EM's)
   Eigen::Matrix3d observed = Eigen::Matrix3d::Zero();  ///< minus the second derivative
@@ -59,12 +62,20 @@ class FieldModel {
   FieldLinearisation linearise(const std::vector<FieldPoint>& points, const Pose2& pose,
                                double clutter, double spread_m = 0.0) const;
   /// Log-evidence for a pose against others far from it, where what is false may lie on straight
-  /// lines: how much better than clutter the map explains the points, Σ_j min(line_price, Σ_i r_ij
-  /// log(Λ_i/c_i)) over the lines j, r_ij the share of line j in point i. Within a hypothesis the
-  /// likelihood is right; between hypotheses it takes the points of one false line for as many
-  /// independent facts.
-  double line_evidence(const std::vector<FieldPoint>& points, const Pose2& pose,
+  /// lines: how much better than clutter the points are explained. Those of a straight group lie on
+  /// the map's lines as this pose has it, or on one straight line that the map lacks,
+  ///
+  ///   Σ_{i in no group} log(Λ_i/c_i) + Σ_g log(Π_{i∈g} Λ_i/c_i + e^{−line_price} Π_{i∈g} (ρ_i +
+  ///   c_i)/c_i),
+  ///
+  /// ρ_i the density of point i on its group's own line. Within a hypothesis the likelihood is
+  /// right; between hypotheses it takes the points of one false line for as many independent facts.
+  double line_evidence(const std::vector<FieldPoint>& points,
+                       const std::vector<StraightGroup>& groups, const Pose2& pose,
                        double clutter) const;
+  std::vector<StraightGroup> groups_of(const FieldScan& scan) const {
+    return straight_groups(scan.points, params_.floor_m);
+  }
   /// Log-likelihood of goals and posts, up to a constant.
   double log_likelihood_of_sightings(const FieldScan& scan, const Pose2& pose) const;
   /// Gradient and information of the sightings that lie within 3σ of a goal or post of their

@@ -40,9 +40,11 @@ FieldFix refine_field_pose(const FieldModel& model, const std::vector<FieldPoint
                            const Pose2& start, const std::optional<Prior>& prior = std::nullopt,
                            const FieldRefineParams& params = {});
 
-/// Log-evidence of a fix against others far from it, at a common share of clutter: points line by
-/// line (FieldModel::line_evidence), sightings, the prior's density and the volume about the pose.
-double log_evidence_of(const FieldModel& model, const FieldScan& scan, const FieldFix& fix,
+/// Log-evidence of a fix against others far from it, at a common share of clutter: points
+/// (FieldModel::line_evidence(), @p groups the scan's), sightings, the prior's density and the
+/// volume about the pose.
+double log_evidence_of(const FieldModel& model, const FieldScan& scan,
+                       const std::vector<StraightGroup>& groups, const FieldFix& fix,
                        double clutter);
 
 }  // namespace vigia::localization

@@ -47,8 +47,11 @@ class FieldTracker {
     Eigen::Matrix3d covariance;
     double log_weight = 0.0;
   };
-  void refine_all(const FieldScan& scan);
-  void add_matches(const FieldScan& scan);
+  using Matches = std::vector<FieldMatcher::Suggestion>;
+  void refine_all(const FieldScan& scan, const std::vector<StraightGroup>& groups,
+                  const Matches& matches);
+  void add_matches(const FieldScan& scan, const std::vector<StraightGroup>& groups,
+                   const Matches& matches);
   bool evidence_has_fallen() const;
   void merge_and_prune();
   void refresh_belief();
