@@ -54,6 +54,8 @@ void SceneView::find_surfaces(const Eigen::Isometry3d& cMw) {
   const RayBox whole = ray_box(model_, 0, image_width(model_) - 1, 0, image_height(model_) - 1);
   std::vector<SurfaceView> all;
   std::vector<ViewId> every;
+  all.reserve(content_.surfaces.size());
+  every.reserve(content_.surfaces.size());
   for (std::size_t i = 0; i < content_.surfaces.size(); ++i) {
     SurfaceView view;
     if (!make_view(content_.surfaces[i], cMw, resolution_px(model_), view)) continue;
@@ -68,6 +70,7 @@ void SceneView::find_surfaces(const Eigen::Isometry3d& cMw) {
   else
     seen = every;
   view_of_surface_.assign(content_.surfaces.size(), -1);
+  surfaces_.reserve(seen.size());
   for (const ViewId id : seen) {
     view_of_surface_[all[id].index] = static_cast<int>(surfaces_.size());
     surfaces_.push_back(all[id]);
@@ -94,19 +97,13 @@ void SceneView::see(int u, int v, int count, PixelRow& row) {
 
 void SceneView::see_surfaces(int u, int v, int count, PixelRow& row) {
   row_rays(model_, u, v, count, row.x.data(), row.y.data(), row.z.data());
-  const auto& tiles = tiles_.row(u, u + count, v / kTile * kTile, surfaces_, stripes_);
-  const int first_tile = u / kTile * kTile;
-  for (std::size_t i = 0; i < tiles.size();) {
-    // Neighbouring tiles that see the same surfaces are one.
-    std::size_t end = i + 1;
-    while (end < tiles.size() && tiles_.same_views(*tiles[i], *tiles[end])) ++end;
-    const int from = std::max(first_tile + static_cast<int>(i) * kTile, u) - u;
-    const int to = std::min(first_tile + static_cast<int>(end) * kTile, u + count) - u;
-    if (tiles[i]->pure)
-      see_one(*tiles_.views_of(*tiles[i]), from, to - from, row);
+  for (const TileSpan& span : tiles_.spans(u, u + count, v / kTile * kTile, surfaces_, stripes_)) {
+    const int from = std::max(span.u, u) - u;
+    const int to = std::min(span.u_end, u + count) - u;
+    if (span.tile->pure)
+      see_one(*tiles_.views_of(*span.tile), from, to - from, row);
     else
-      see_nearest(*tiles[i], from, to - from, row);
-    i = end;
+      see_nearest(*span.tile, from, to - from, row);
   }
 }
 

@@ -30,6 +30,11 @@ const std::vector<const Tile*>& TileGrid::row(int u, int u_end, int tile_v,
                                               const std::vector<StripeView>& stripes) {
   const int first = u / kTile;
   const int last = (u_end - 1) / kTile;
+  const int row_first = tile_v / kTile * columns_ + first;
+  if (row_first == row_first_ && row_.size() == static_cast<std::size_t>(last - first + 1))
+    return row_;
+  row_first_ = row_first;
+  spans_.clear();
   if (every_.size() != views.size()) {
     every_.resize(views.size());
     std::iota(every_.begin(), every_.end(), ViewId{0});
@@ -37,8 +42,7 @@ const std::vector<const Tile*>& TileGrid::row(int u, int u_end, int tile_v,
   const std::vector<ViewId>* among = nullptr;
   row_.clear();
   for (int column = first; column <= last; ++column) {
-    const int index = tile_v / kTile * columns_ + column;
-    Tile& tile = tiles_[static_cast<std::size_t>(index)];
+    Tile& tile = tiles_[static_cast<std::size_t>(row_first + column - first)];
     if (!tile.known) {
       if (among == nullptr) {
         among = &every_;
@@ -56,6 +60,21 @@ const std::vector<const Tile*>& TileGrid::row(int u, int u_end, int tile_v,
     row_.push_back(&tile);
   }
   return row_;
+}
+
+const std::vector<TileSpan>& TileGrid::spans(int u, int u_end, int tile_v,
+                                             const std::vector<SurfaceView>& views,
+                                             const std::vector<StripeView>& stripes) {
+  row(u, u_end, tile_v, views, stripes);
+  if (!spans_.empty()) return spans_;
+  int tile_u = u / kTile * kTile;
+  for (const Tile* tile : row_) {
+    if (spans_.empty() || !same_views(*spans_.back().tile, *tile))
+      spans_.push_back({tile, tile_u, tile_u});
+    tile_u += kTile;
+    spans_.back().u_end = tile_u;
+  }
+  return spans_;
 }
 
 void TileGrid::compute(Tile& tile, int u, int v, const std::vector<ViewId>& among,

@@ -21,6 +21,13 @@ struct Tile {
   std::size_t patch_count = 0;
 };
 
+/// Columns [u, u_end) of neighbouring tiles that see the same surfaces, those of @p tile.
+struct TileSpan {
+  const Tile* tile = nullptr;
+  int u = 0;
+  int u_end = 0;
+};
+
 /// Blurred shares of a stripe in one tile, row by row.
 struct StripePatch {
   const StripeView* stripe = nullptr;
@@ -39,14 +46,18 @@ class TileGrid {
   const std::vector<const Tile*>& row(int u, int u_end, int tile_v,
                                       const std::vector<SurfaceView>& views,
                                       const std::vector<StripeView>& stripes);
+  /// The same tiles, neighbours that see the same surfaces taken together.
+  const std::vector<TileSpan>& spans(int u, int u_end, int tile_v,
+                                     const std::vector<SurfaceView>& views,
+                                     const std::vector<StripeView>& stripes);
 
   const ViewId* views_of(const Tile& tile) const { return view_pool_.data() + tile.first_view; }
   const StripePatch* patches_of(const Tile& tile) const {
     return patch_pool_.data() + tile.first_patch;
   }
-  bool same_views(const Tile& a, const Tile& b) const;
 
  private:
+  bool same_views(const Tile& a, const Tile& b) const;
   void compute(Tile& tile, int u, int v, const std::vector<ViewId>& among,
                const std::vector<SurfaceView>& views, const std::vector<StripeView>& stripes);
   void paint_stripes(Tile& tile, int u, int v, const std::vector<StripeView>& stripes);
@@ -57,7 +68,9 @@ class TileGrid {
   std::vector<Tile> tiles_;
   std::vector<ViewId> view_pool_;
   std::vector<StripePatch> patch_pool_;
-  std::vector<const Tile*> row_;
+  std::vector<const Tile*> row_;  ///< what was asked for last: the next row of pixels asks again
+  int row_first_ = -1;            ///< index of its first tile
+  std::vector<TileSpan> spans_;   ///< of row_; empty until asked for
   std::vector<ViewId> every_;
   std::vector<ViewId> near_row_;
   std::vector<ViewId> visible_;

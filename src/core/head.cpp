@@ -45,7 +45,12 @@ Eigen::Isometry3d camera_in_base(const HeadGeometry& geometry, const HeadAngles&
 
 Eigen::Matrix<double, 6, 2> camera_jacobian_head(const HeadGeometry& geometry,
                                                  const HeadAngles& angles) {
-  const Eigen::Isometry3d rMc = camera_in_base(geometry, angles);
+  return camera_jacobian_head(geometry, angles, camera_in_base(geometry, angles));
+}
+
+Eigen::Matrix<double, 6, 2> camera_jacobian_head(const HeadGeometry& geometry,
+                                                 const HeadAngles& angles,
+                                                 const Eigen::Isometry3d& rMc) {
   const Eigen::Vector3d tilt_axis_r =
       -(rotation_z(geometry.mount_yaw + angles.pan) * Eigen::Vector3d::UnitY());
   Eigen::Matrix<double, 6, 2> jacobian;

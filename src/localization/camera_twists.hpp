@@ -7,11 +7,26 @@
 
 namespace vigia::localization {
 
+/// A camera of a robot at a pose.
+struct PlacedCamera {
+  const Camera* camera = nullptr;
+  HeadAngles head;
+  Eigen::Isometry3d rMc = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d wMc = Eigen::Isometry3d::Identity();
+
+  PlacedCamera(const RigOnGround& on_ground, CameraId id, const HeadAngles& at, const Pose2& pose)
+      : camera(&on_ground.rig.at(id)),
+        head(at),
+        rMc(camera->rMc(at)),
+        wMc(on_ground.ground.place(pose) * rMc) {}
+};
+
 /// Columns: the camera's twist (v, ω) in its own frame per pan and tilt. A fixed camera has none.
-inline Eigen::Matrix<double, 6, 2> head_twists(const Camera& camera, const HeadAngles& head) {
+inline Eigen::Matrix<double, 6, 2> head_twists(const Camera& camera, const HeadAngles& head,
+                                               const Eigen::Isometry3d& rMc) {
   const auto* mount = std::get_if<HeadGeometry>(&camera.mount);
   if (mount == nullptr) return Eigen::Matrix<double, 6, 2>::Zero();
-  return camera_jacobian_head(*mount, head);
+  return camera_jacobian_head(*mount, head, rMc);
 }
 
 /// Columns: the camera's twist (v, ω) in its own frame per x, y, θ.
@@ -37,12 +52,11 @@ inline Eigen::Matrix<double, 6, 3> base_twists(const RigOnGround& on_ground,
 }
 
 /// Columns: the camera's twist (v, ω) in its own frame per x, y, θ, pan and tilt.
-inline Eigen::Matrix<double, 6, 5> camera_twists(const RigOnGround& on_ground, CameraId id,
-                                                 const HeadAngles& head, const Pose2& pose,
-                                                 const Eigen::Isometry3d& wMc) {
-  const Camera& camera = on_ground.rig.at(id);
+inline Eigen::Matrix<double, 6, 5> camera_twists(const RigOnGround& on_ground,
+                                                 const PlacedCamera& placed, const Pose2& pose) {
   Eigen::Matrix<double, 6, 5> twists;
-  twists << base_twists(on_ground, camera.rMc(head), pose, wMc), head_twists(camera, head);
+  twists << base_twists(on_ground, placed.rMc, pose, placed.wMc),
+      head_twists(*placed.camera, placed.head, placed.rMc);
   return twists;
 }
 

@@ -38,11 +38,33 @@ Eigen::Matrix3d with_floor(Eigen::Matrix3d R, const MeasurementParams& params) {
   return R;
 }
 
-/// The whole of what the ellipse says, size included.
-DiscMatch full_match(const MeasurementModel& model, const EllipseObservation& observation,
-                     const Landmark& landmark) {
-  return {observation.shot, landmark, measured_disc(observation),
+/// The whole of what an ellipse says, size included, whichever landmark it shows.
+struct Measured {
+  Eigen::Vector3d z;
+  Eigen::Matrix3d R;
+};
+
+Measured measured(const MeasurementModel& model, const EllipseObservation& observation) {
+  return {measured_disc(observation),
           with_floor(measured_disc_covariance(observation), model.params())};
+}
+
+std::optional<Linearised<3>> linearise_as(const Landmark& landmark, const MeasurementModel& model,
+                                          const Shot& shot, const Measured& measured,
+                                          const Vector6& at) {
+  const Eigen::Vector3d shared = model.look_biases(shot.camera).matrix();
+  const auto image =
+      predict_disc(landmark, shot, model.on_ground(), Pose2::from_vector(at.head<3>()),
+                   {shared(0) * at(3), shared(1) * at(4), shared(2) * at(5)});
+  if (!image) return std::nullopt;
+  const double reading = model.params().sensor.reading_angle;
+  const Eigen::Matrix<double, 3, 2> J = image->dz_dbias.leftCols<2>();
+  Linearised<3> seen;
+  seen.H << image->dz_dpose, image->dz_dbias;
+  seen.y = measured.z - image->z;
+  seen.R = measured.R + reading * reading * J * J.transpose();
+  seen.H.rightCols<3>() = seen.H.rightCols<3>().eval() * shared.asDiagonal();
+  return seen;
 }
 
 Eigen::Vector3d eye_at(const MeasurementModel& model, const Pose2& pose, const Shot& shot) {
@@ -92,8 +114,9 @@ Candidates candidates(const MeasurementModel& model, const EllipseObservation& o
                       const LookState& state) {
   Candidates found;
   const double gate = model.gate(kDiscDof);
+  const Measured ellipse = measured(model, observation);
   for (const Landmark& landmark : model.map().all()) {
-    const auto seen = linearise(model, full_match(model, observation, landmark), state.mean);
+    const auto seen = linearise_as(landmark, model, observation.shot, ellipse, state.mean);
     if (!seen) continue;
     const DiscCandidate candidate = weigh(landmark, *seen, state);
     if (!std::isfinite(candidate.cost)) continue;
@@ -133,26 +156,14 @@ AssociationOf<DiscMatch> associate(const MeasurementModel& model,
 std::optional<DiscMatch> match(const MeasurementModel& model, const EllipseObservation& observation,
                                const Landmark& landmark) {
   if (!disc_radius(landmark)) return std::nullopt;
-  DiscMatch match = full_match(model, observation, landmark);
-  if (!model.params().use_size) match.R = without_size(match.R);
-  return match;
+  const Measured whole = measured(model, observation);
+  return DiscMatch{observation.shot, landmark, whole.z,
+                   model.params().use_size ? whole.R : without_size(whole.R)};
 }
 
 std::optional<Linearised<3>> linearise(const MeasurementModel& model, const DiscMatch& match,
                                        const Vector6& at) {
-  const Eigen::Vector3d shared = model.look_biases(match.shot.camera).matrix();
-  const auto image =
-      predict_disc(match.landmark, match.shot, model.on_ground(), Pose2::from_vector(at.head<3>()),
-                   {shared(0) * at(3), shared(1) * at(4), shared(2) * at(5)});
-  if (!image) return std::nullopt;
-  const double reading = model.params().sensor.reading_angle;
-  const Eigen::Matrix<double, 3, 2> J = image->dz_dbias.leftCols<2>();
-  Linearised<3> seen;
-  seen.H << image->dz_dpose, image->dz_dbias;
-  seen.y = match.z - image->z;
-  seen.R = match.R + reading * reading * J * J.transpose();
-  seen.H.rightCols<3>() = seen.H.rightCols<3>().eval() * shared.asDiagonal();
-  return seen;
+  return linearise_as(match.landmark, model, match.shot, {match.z, match.R}, at);
 }
 
 std::optional<double> log_likelihood(const MeasurementModel& model,

@@ -168,8 +168,8 @@ std::optional<DiscMeasurement> predict_disc(const Landmark& landmark, const Shot
   const auto radius = disc_radius(landmark);
   if (!radius) return std::nullopt;
   const HeadAngles head{shot.head.pan + bias.pan, shot.head.tilt + bias.tilt};
-  const Eigen::Isometry3d wMc = on_ground.wMc(shot.camera, head, pose);
-  const Disc disc = in_camera(landmark, *radius, wMc);
+  const PlacedCamera placed(on_ground, shot.camera, head, pose);
+  const Disc disc = in_camera(landmark, *radius, placed.wMc);
   if (!has_image(disc)) return std::nullopt;
   const PlaneEllipse image = perspective(disc);
   const auto lens = lens_at(pinhole(shot), image.c);
@@ -179,7 +179,7 @@ std::optional<DiscMeasurement> predict_disc(const Landmark& landmark, const Shot
   const double px = pinhole(shot).px * std::exp(bias.log_focal);
   const double py = pinhole(shot).py * std::exp(bias.log_focal);
   const Eigen::Vector3d scale(px, py, 1.0);
-  const Eigen::Matrix<double, 6, 5> twists = camera_twists(on_ground, shot.camera, head, pose, wMc);
+  const Eigen::Matrix<double, 6, 5> twists = camera_twists(on_ground, placed, pose);
   Eigen::Matrix<double, 3, 5> dz;
   for (Eigen::Index i = 0; i < 5; ++i) {
     const Eigen::Vector3d w_c = twists.col(i).tail<3>();

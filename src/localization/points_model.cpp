@@ -176,8 +176,8 @@ std::optional<PointsMeasurement> measure_points(const std::vector<SeenPoint>& po
                                                 const RigOnGround& on_ground, const Pose2& pose,
                                                 const LookBias& bias) {
   const HeadAngles head{shot.head.pan + bias.pan, shot.head.tilt + bias.tilt};
-  const Eigen::Isometry3d wMc = on_ground.wMc(shot.camera, head, pose);
-  const Eigen::Isometry3d cMl = wMc.inverse() * wMl;
+  const PlacedCamera placed(on_ground, shot.camera, head, pose);
+  const Eigen::Isometry3d cMl = placed.wMc.inverse() * wMl;
   Intrinsics intrinsics = pinhole(shot);
   intrinsics.px *= std::exp(bias.log_focal);
   intrinsics.py *= std::exp(bias.log_focal);
@@ -185,7 +185,7 @@ std::optional<PointsMeasurement> measure_points(const std::vector<SeenPoint>& po
   if (!fit) return std::nullopt;
 
   // A camera that moves by (v, ω) sees the landmark move by (−v − ω × t, −ω).
-  const Eigen::Matrix<double, 6, 5> twists = camera_twists(on_ground, shot.camera, head, pose, wMc);
+  const Eigen::Matrix<double, 6, 5> twists = camera_twists(on_ground, placed, pose);
   Eigen::Matrix<double, 7, 6> dfit_dstate = Eigen::Matrix<double, 7, 6>::Zero();
   dfit_dstate.block<3, 5>(0, 0) =
       skew(cMl.translation()) * twists.bottomRows<3>() - twists.topRows<3>();

@@ -39,7 +39,7 @@ SpatialPose robot_in_space(const Landmark& landmark, const FittedPose& fit, cons
   dbase_dfit.topRightCorner<3, 3>() = skew(camera_to_base) - skew(fit.cMl.translation());
   dbase_dfit.bottomRightCorner<3, 3>() = -Eigen::Matrix3d::Identity();
   // The camera's twist in the base by pan and tilt moves the base the other way, about the camera.
-  const Eigen::Matrix<double, 6, 2> twist = head_twists(camera, shot.head);
+  const Eigen::Matrix<double, 6, 2> twist = head_twists(camera, shot.head, rMc);
   Eigen::Matrix<double, 6, 2> dbase_dhead;
   dbase_dhead << skew(camera_to_base) * twist.bottomRows<3>() - twist.topRows<3>(),
       -twist.bottomRows<3>();

@@ -29,6 +29,10 @@ Eigen::Isometry3d camera_in_base(const HeadGeometry& geometry, const HeadAngles&
 /// Columns ∂(v, ω)/∂(pan rate, tilt rate): velocity twist of the camera in its own frame c.
 Eigen::Matrix<double, 6, 2> camera_jacobian_head(const HeadGeometry& geometry,
                                                  const HeadAngles& angles);
+/// The same where rMc, camera_in_base() at these angles, is at hand.
+Eigen::Matrix<double, 6, 2> camera_jacobian_head(const HeadGeometry& geometry,
+                                                 const HeadAngles& angles,
+                                                 const Eigen::Isometry3d& rMc);
 
 /// Columns ∂(v, ω)/∂(base speed, base turn rate): velocity twist of the camera in its own frame c.
 Eigen::Matrix<double, 6, 2> camera_jacobian_base(const HeadGeometry& geometry,
