@@ -30,8 +30,9 @@ double length_on(const FieldLine& one, const FieldLine& other) {
   if (std::abs(cross(along, other.a - one.a)) > kOnLine_m ||
       std::abs(cross(along, other.b - one.a)) > kOnLine_m)
     return 0.0;
-  const auto [low, high] = std::minmax(along.dot(other.a - one.a), along.dot(other.b - one.a));
-  return std::min(high, length) - std::max(low, 0.0);
+  const double from = along.dot(other.a - one.a);
+  const double to = along.dot(other.b - one.a);
+  return std::min(std::max(from, to), length) - std::max(std::min(from, to), 0.0);
 }
 
 void add_line(FieldMap& map, const Eigen::Vector2d& from, const Eigen::Vector2d& to, double width_m,
