@@ -31,8 +31,8 @@ const std::vector<const Tile*>& TileGrid::row(int u, int u_end, int tile_v,
   const int first = u / kTile;
   const int last = (u_end - 1) / kTile;
   const int row_first = tile_v / kTile * columns_ + first;
-  if (row_first == row_first_ && row_.size() == static_cast<std::size_t>(last - first + 1))
-    return row_;
+  const int count = last - first + 1;
+  if (row_first == row_first_ && row_.size() == static_cast<std::size_t>(count)) return row_;
   row_first_ = row_first;
   spans_.clear();
   if (every_.size() != views.size()) {

@@ -44,6 +44,13 @@ const std::vector<std::pair<FieldLocalizer, const char*>> kTrackers{
     {FieldLocalizer::mcl, "mcl"},
     {FieldLocalizer::murea, "murea"}};
 
+std::vector<FieldLocalizer> all_trackers() {
+  std::vector<FieldLocalizer> all;
+  all.reserve(kTrackers.size());
+  for (const auto& tracker : kTrackers) all.push_back(tracker.first);
+  return all;
+}
+
 struct MinhoRun {
   const PaperOptions& options;
   evaluation::PaperTable& table;
@@ -208,15 +215,16 @@ void draw_heat_map(const MinhoRun& run, const FieldMap& map, const FrameStudy& s
   heat.columns = static_cast<int>(map.length_m);
   heat.rows = static_cast<int>(map.width_m);
   heat.top = top_cm;
-  const auto cells = static_cast<std::size_t>(heat.columns * heat.rows);
+  const int all = heat.columns * heat.rows;
+  const auto cells = static_cast<std::size_t>(all);
   std::vector<double> sums(cells, 0.0);
   std::vector<int> counts(cells, 0);
   for (std::size_t i = 0; i < study.truths.size(); ++i) {
     const auto& out = study.outcomes.at(method)[i];
     if (!out.answered) continue;
     const Eigen::Vector2d at = study.truths[i].position() - heat.min_m;
-    const auto cell = static_cast<std::size_t>(static_cast<int>(at.y()) * heat.columns +
-                                               static_cast<int>(at.x()));
+    const int index = static_cast<int>(at.y()) * heat.columns + static_cast<int>(at.x());
+    const auto cell = static_cast<std::size_t>(index);
     sums[cell] += kCm * out.position_m();
     ++counts[cell];
   }
@@ -254,8 +262,7 @@ void add_drive_rows(const MinhoRun& run, const std::string& name,
 }
 
 void add_drives(const MinhoRun& run, const FieldMap& map) {
-  std::vector<FieldLocalizer> localizers;
-  for (const auto& tracker : kTrackers) localizers.push_back(tracker.first);
+  const std::vector<FieldLocalizer> localizers = all_trackers();
   for (const FieldFrameParams& frames : clutters()) {
     FieldDriveParams params;
     params.frames = frames;
@@ -287,8 +294,7 @@ void add_tribots(const MinhoRun& run) {
 }
 
 void add_kidnapped(const MinhoRun& run) {
-  std::vector<FieldLocalizer> localizers;
-  for (const auto& tracker : kTrackers) localizers.push_back(tracker.first);
+  const std::vector<FieldLocalizer> localizers = all_trackers();
   const int count = run.trials(kKidnapTrials);
   for (const auto& [name, symmetric] : {std::pair{"12x8", false}, std::pair{"msl-22x14", true}}) {
     FieldDriveParams params;

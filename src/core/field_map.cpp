@@ -224,8 +224,8 @@ FieldDistance::Candidates FieldDistance::near(const Eigen::Vector2d& p) const {
   const Eigen::Vector2d at = (p - corner_) / cell_m_;
   if (!(at.x() >= 0.0 && at.y() >= 0.0 && at.x() < columns_ && at.y() < rows_))
     return {candidates_.data(), candidates_.data()};
-  const auto cell =
-      static_cast<std::size_t>(static_cast<int>(at.y()) * columns_ + static_cast<int>(at.x()));
+  const int index = static_cast<int>(at.y()) * columns_ + static_cast<int>(at.x());
+  const auto cell = static_cast<std::size_t>(index);
   return {candidates_.data() + first_[cell], candidates_.data() + first_[cell + 1]};
 }
 

@@ -243,10 +243,11 @@ FieldDriveErrors drive_errors(const std::vector<FieldDrive>& drives, FieldLocali
 KidnapCount count_kidnapped(const std::vector<FieldDrive>& drives, FieldLocalizer localizer,
                             int kidnapped_at, int within) {
   KidnapCount count;
+  const int judged_at = kidnapped_at + within;
   for (const FieldDrive& drive : drives) {
     const std::vector<FieldDriveSample>& samples = drive.at(localizer);
     ++count.trials;
-    const FieldDriveSample& last = samples.at(static_cast<std::size_t>(kidnapped_at + within));
+    const FieldDriveSample& last = samples.at(static_cast<std::size_t>(judged_at));
     if (!last.wrong() && !last.flagged()) ++count.recovered;
     if (last.wrong() && !last.flagged()) ++count.confident_wrong;
     if (last.flagged() &&
@@ -256,7 +257,7 @@ KidnapCount count_kidnapped(const std::vector<FieldDrive>& drives, FieldLocalize
                     }))
       ++count.both;
     int k = kidnapped_at;
-    while (k < kidnapped_at + within && samples[static_cast<std::size_t>(k)].wrong() &&
+    while (k < judged_at && samples[static_cast<std::size_t>(k)].wrong() &&
            !samples[static_cast<std::size_t>(k)].flagged())
       ++k;
     count.mean_unflagged += k - kidnapped_at;

@@ -28,6 +28,7 @@ std::vector<double> ray_bearings(const FieldFrameParams& params, RandomStream& r
   const int rays = static_cast<int>(std::lround(360.0 / params.ray_step_deg));
   const double first = random.uniform(0.0, 2.0 * kPi / rays);
   std::vector<double> bearings;
+  bearings.reserve(static_cast<std::size_t>(rays));
   for (int i = 0; i < rays; ++i) bearings.push_back(wrap_angle(first + 2.0 * kPi * i / rays));
   return bearings;
 }

@@ -94,8 +94,8 @@ int FieldGrid::count_on_lines(const std::vector<Eigen::Vector2d>& turned,
   for (const Eigen::Vector2d& p : turned) {
     const Eigen::Vector2d cell = (at + p - corner_) / cell_m_;
     if (!(cell.x() >= 0.0 && cell.y() >= 0.0 && cell.x() < columns_ && cell.y() < rows_)) continue;
-    count += line_[static_cast<std::size_t>(static_cast<int>(cell.y()) * columns_ +
-                                            static_cast<int>(cell.x()))];
+    const int index = static_cast<int>(cell.y()) * columns_ + static_cast<int>(cell.x());
+    count += line_[static_cast<std::size_t>(index)];
   }
   return count;
 }

@@ -42,7 +42,8 @@ void draw_heat_cells(const Sheet& sheet, const HeatMap& map, const Box& frame) {
   const double h = frame.height / map.rows;
   for (int row = 0; row < map.rows; ++row)
     for (int column = 0; column < map.columns; ++column) {
-      const double value = map.values[static_cast<std::size_t>(row * map.columns + column)];
+      const int index = row * map.columns + column;
+      const double value = map.values[static_cast<std::size_t>(index)];
       if (std::isnan(value)) continue;
       sheet.rectangle({frame.x + w * column, frame.bottom() - h * (row + 1), w + 0.5, h + 0.5});
       sheet.fill(heat_colour(value / map.top));
@@ -66,8 +67,9 @@ void draw_heat_key(const Sheet& sheet, const HeatMap& map, const Box& frame) {
 
 void write_heat_map(const std::filesystem::path& file, const HeatMap& map) {
   const Eigen::Vector2d size = map.max_m - map.min_m;
+  const int cells = map.columns * map.rows;
   if (map.columns <= 0 || map.rows <= 0 || !(map.top > 0.0) || !(size.minCoeff() > 0.0) ||
-      map.values.size() != static_cast<std::size_t>(map.columns * map.rows))
+      map.values.size() != static_cast<std::size_t>(cells))
     throw std::invalid_argument("a heat map needs a value for each of its cells and a scale");
   const Box frame{kHeatLeft, kHeatTop, kHeatAcross, kHeatAcross * size.y() / size.x()};
   Sheet sheet(file, kHeatWidth, frame.bottom() + 30.0);
@@ -77,6 +79,7 @@ void write_heat_map(const std::filesystem::path& file, const HeatMap& map) {
   draw_heat_cells(sheet, map, frame);
   for (const auto& line : map.lines) {
     std::vector<Eigen::Vector2d> drawn;
+    drawn.reserve(line.size());
     for (const Eigen::Vector2d& p : line)
       drawn.emplace_back(frame.x + frame.width * (p.x() - map.min_m.x()) / size.x(),
                          frame.bottom() - frame.height * (p.y() - map.min_m.y()) / size.y());
