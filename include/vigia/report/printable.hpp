@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <optional>
-#include <variant>
 
 #include <Eigen/Core>
 
@@ -10,7 +9,7 @@
 
 namespace vigia::report {
 
-using LandmarkShape = std::variant<DiscShape, PatternShape, TagShape>;
+using LandmarkShape = decltype(Landmark::shape);
 
 /// A page with a landmark at true scale, metres: the landmark's sheet at the top, below it what the
 /// landmark is, in words, and a bar to check the scale of the print.
