@@ -61,6 +61,33 @@ TEST(FieldModel, GradientIsThatOfTheLogLikelihood) {
   }
 }
 
+TEST(FieldModel, WhatTheGradientLeavesOutIsHowTheIncidenceChanges) {
+  FieldMap map;
+  map.length_m = 12.0;
+  map.width_m = 8.0;
+  map.lines = {FieldLine::segment({-6.0, 0.5}, {6.0, 0.5}, 0.125)};
+  const FieldModel model(map);
+  RandomStream random(4, "incidence");
+  constexpr double kStep = 1e-6;
+  for (int i = 0; i < 50; ++i) {
+    const Pose2 at{random.uniform(-2.0, 2.0), random.uniform(-3.0, -0.5),
+                   random.uniform(-kPi, kPi)};
+    const Eigen::Vector2d to(random.uniform(-2.0, 2.0), 0.5 + 0.05 * random.normal() - at.y);
+    const double bearing = std::atan2(to.y(), to.x()) - at.theta;
+    // As wide in all directions, so that the spread across the line does not change with θ.
+    const std::vector<FieldPoint> point{polar_point(bearing, to.norm(), 0.04 / to.norm(), 0.04)};
+    const FieldLinearisation sums = model.linearise(point, at, 0.2);
+    const Eigen::Vector3d left_out(0.0, 0.0, sums.on_lines * to.x() / to.y());  // r ∂ln|n·u|/∂θ
+    for (int axis = 0; axis < 3; ++axis) {
+      const double slope = (model.log_likelihood(point, moved(at, axis, kStep), 0.2) -
+                            model.log_likelihood(point, moved(at, axis, -kStep), 0.2)) /
+                           (2.0 * kStep);
+      EXPECT_NEAR(sums.gradient[axis] + left_out[axis], slope, 1e-5 * std::abs(slope) + 1e-5)
+          << axis;
+    }
+  }
+}
+
 TEST(FieldModel, ObservedInformationIsTheGradientsSlope) {
   const FieldModel model(field("12x8"));
   RandomStream random(2, "information");
