@@ -6,6 +6,7 @@
 
 #include "vigia/core/angle.hpp"
 #include "vigia/core/plane_geometry.hpp"
+#include "vigia/localization/normal_density.hpp"
 
 namespace vigia::localization {
 namespace {
@@ -13,7 +14,6 @@ namespace {
 constexpr double kGateSigmas = 4.0;  // a line farther off has no share in a point
 constexpr double kWidestSigma_m = 0.6;
 constexpr double kSightingGate = 11.8;  // χ² of 3σ, two degrees of freedom
-const double kInvSqrt2Pi = 1.0 / std::sqrt(2.0 * kPi);
 
 /// One line's share in a point.
 struct LineShare {
@@ -46,8 +46,8 @@ LineShare line_share(const FieldLine& line, const PlacedPoint& point, double ext
   const Eigen::Vector2d along(-n.y(), n.x());
   const double along_sigma = std::sqrt(along.dot(point.covariance_w * along) + extra_variance);
   if (offset.inside_m < -kGateSigmas * along_sigma) return share;
-  share.density = std::abs(n.dot(point.direction_w)) * kInvSqrt2Pi / std::sqrt(variance) *
-                  std::exp(-0.5 * d * d / variance) * share_inside(offset.inside_m, along_sigma);
+  share.density = std::abs(n.dot(point.direction_w)) * normal_density(d, variance) *
+                  share_inside(offset.inside_m, along_sigma);
   share.score = -d / variance;
   share.information = 1.0 / variance;
   share.normal = n;

@@ -5,7 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "vigia/core/angle.hpp"
+#include "vigia/localization/normal_density.hpp"
 
 namespace vigia::localization {
 namespace {
@@ -13,7 +13,6 @@ namespace {
 constexpr double kInlierSigmas = 3.0;
 constexpr double kNearest_m = 0.3;  // two points nearer than this give no direction
 constexpr int kRefits = 2;
-const double kInvSqrt2Pi = 1.0 / std::sqrt(2.0 * kPi);
 
 struct Line {
   Eigen::Vector2d at;
@@ -83,7 +82,7 @@ double density_on(const FieldPoint& point, const Line& line, double floor_m) {
   const double d = line.normal.dot(point.p_r - line.at);
   const double variance = variance_along(point, line.normal, floor_m);
   const double incidence = std::abs(line.normal.dot(point.p_r)) / std::max(1e-6, point.p_r.norm());
-  return incidence * kInvSqrt2Pi / std::sqrt(variance) * std::exp(-0.5 * d * d / variance);
+  return incidence * normal_density(d, variance);
 }
 
 }  // namespace
