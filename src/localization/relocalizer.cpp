@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include "vigia/localization/chi_square.hpp"
@@ -17,6 +18,12 @@ constexpr int kMaxSteps = 20;
 /// A fit less likely than this is none. Far out: the right pose must not drop out by bad luck and
 /// leave the field to a wrong one, and two discs in one look share an error that counts twice here.
 constexpr double kImpossible = 1e-6;
+/// How far off place() may put a disc: so much, and a share of the range. Sizes off the optical
+/// axis overstate the range by up to a tenth.
+constexpr double kPlaceTolerance_m = 0.1;
+constexpr double kPlaceToleranceShare = 0.12;
+/// As many seeds are tried in full; of more, those that the sightings support best.
+constexpr std::size_t kMaxSeeds = 600;
 /// A start covariance wide enough to take in every landmark that a closed-form pose may mean.
 const Eigen::Vector3d kSeedSigma(0.3, 0.3, from_deg(4.0));
 
@@ -140,15 +147,64 @@ std::vector<Pose2> Relocalizer::seeds(const std::vector<EllipseObservation>& sig
           const Eigen::Vector2d q_j = place(sightings[j], *disc_radius(l), model_.on_ground());
           const Eigen::Vector2d p_k = k.centre_w().head<2>();
           const Eigen::Vector2d p_l = l.centre_w().head<2>();
-          // Sizes off the optical axis overstate the range by up to a tenth.
-          const double tolerance = 0.1 + 0.12 * (q_i.norm() + q_j.norm());
+          const double tolerance =
+              kPlaceTolerance_m + kPlaceToleranceShare * (q_i.norm() + q_j.norm());
           if (std::abs((q_j - q_i).norm() - (p_l - p_k).norm()) < tolerance)
             poses.push_back(align(q_i, q_j, p_k, p_l));
         }
       }
     }
   }
-  return poses;
+  return best_supported(std::move(poses), sightings);
+}
+
+/// Pairs that fit in distance alone grow with the square of sightings and of landmarks; a look at
+/// where the other sightings stand from there sorts most of them out. The order stays.
+std::vector<Pose2> Relocalizer::best_supported(
+    std::vector<Pose2> poses, const std::vector<EllipseObservation>& sightings) const {
+  if (poses.size() <= kMaxSeeds) return poses;
+  const std::vector<DiscPlace> places = possible_places(sightings);
+  std::vector<std::pair<int, std::size_t>> order;
+  order.reserve(poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    order.emplace_back(-supporters(poses[i], places), i);
+  std::nth_element(order.begin(), order.begin() + kMaxSeeds, order.end());
+  order.resize(kMaxSeeds);
+  std::sort(order.begin(), order.end(),
+            [](const auto& a, const auto& b) { return a.second < b.second; });
+  std::vector<Pose2> kept;
+  kept.reserve(kMaxSeeds);
+  for (const auto& [support, i] : order) kept.push_back(poses[i]);
+  return kept;
+}
+
+std::vector<Relocalizer::DiscPlace> Relocalizer::possible_places(
+    const std::vector<EllipseObservation>& sightings) const {
+  std::vector<DiscPlace> places;
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    for (const Landmark& landmark : model_.map().all()) {
+      if (const auto radius = disc_radius(landmark))
+        places.push_back(
+            {i, place(sightings[i], *radius, model_.on_ground()), landmark.centre_w().head<2>()});
+    }
+  }
+  return places;
+}
+
+int Relocalizer::supporters(const Pose2& pose, const std::vector<DiscPlace>& places) {
+  const Eigen::Rotation2Dd turn(pose.theta);
+  constexpr auto kNone = static_cast<std::size_t>(-1);
+  std::size_t counted = kNone;
+  int count = 0;
+  for (const DiscPlace& at : places) {
+    if (at.sighting == counted) continue;
+    const double tolerance = kPlaceTolerance_m + kPlaceToleranceShare * at.p_r.norm();
+    const Eigen::Vector2d off = pose.position() + turn * at.p_r - at.landmark_w;
+    if (off.squaredNorm() > tolerance * tolerance) continue;
+    counted = at.sighting;
+    ++count;
+  }
+  return count;
 }
 
 /// What a sighting of the landmark says about the pose, the biases of its look at zero.
