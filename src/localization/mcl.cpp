@@ -427,9 +427,9 @@ void Mcl::inject(const FieldScan& scan) {
   double total = 0.0;
   for (const auto& s : suggestions) total += kOddShare + s.weight;
   for (const auto& s : suggestions)
-    inject_about(
-        s.fix, std::max(10, static_cast<int>(params_.injected * (kOddShare + s.weight) / total)),
-        log_uniform, scan);
+    inject_about(s.fix,
+                 std::max(10, static_cast<int>(params_.injected * (kOddShare + s.weight) / total)),
+                 log_uniform, scan);
 }
 
 void Mcl::resample() {
