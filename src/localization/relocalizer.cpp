@@ -22,8 +22,12 @@ constexpr double kImpossible = 1e-6;
 /// axis overstate the range by up to a tenth.
 constexpr double kPlaceTolerance_m = 0.1;
 constexpr double kPlaceToleranceShare = 0.12;
-/// As many seeds are tried in full; of more, those that the sightings support best.
+/// Pairs are made of so many sightings, the largest in the image, whose ranges are the best.
+constexpr std::size_t kPairedSightings = 10;
+/// So many seeds are all tried in full; of more, as many as kChosenSeeds that the sightings support
+/// best and that stand apart.
 constexpr std::size_t kMaxSeeds = 600;
+constexpr std::size_t kChosenSeeds = 60;
 /// A start covariance wide enough to take in every landmark that a closed-form pose may mean.
 const Eigen::Vector3d kSeedSigma(0.3, 0.3, from_deg(4.0));
 
@@ -83,6 +87,14 @@ MeasurementParams measurement_params(const RelocalizerParams& params) {
   return measurement;
 }
 
+std::vector<EllipseObservation> largest(std::vector<EllipseObservation> sightings) {
+  if (sightings.size() <= kPairedSightings) return sightings;
+  std::stable_sort(sightings.begin(), sightings.end(),
+                   [](const auto& a, const auto& b) { return a.ellipse.a > b.ellipse.a; });
+  sightings.resize(kPairedSightings);
+  return sightings;
+}
+
 bool same_place(const Pose2& a, const Pose2& b) {
   const Eigen::Vector3d apart = difference(a, b);
   return apart.head<2>().norm() < 0.1 && std::abs(apart.z()) < from_deg(2.0);
@@ -134,8 +146,9 @@ Relocalization Relocalizer::solve(const Sweep& sweep, const std::optional<Prior>
   return result;
 }
 
-std::vector<Pose2> Relocalizer::seeds(const std::vector<EllipseObservation>& sightings,
+std::vector<Pose2> Relocalizer::seeds(const std::vector<EllipseObservation>& all,
                                       const std::optional<Prior>& prior) const {
+  const std::vector<EllipseObservation> sightings = largest(all);
   std::vector<Pose2> poses;
   if (prior) poses.push_back(prior->pose);
   for (std::size_t i = 0; i < sightings.size(); ++i) {
@@ -155,11 +168,11 @@ std::vector<Pose2> Relocalizer::seeds(const std::vector<EllipseObservation>& sig
       }
     }
   }
-  return best_supported(std::move(poses), sightings);
+  return best_supported(std::move(poses), all);
 }
 
 /// Pairs that fit in distance alone grow with the square of sightings and of landmarks; a look at
-/// where the other sightings stand from there sorts most of them out. The order stays.
+/// where the other sightings stand from there sorts most of them out.
 std::vector<Pose2> Relocalizer::best_supported(
     std::vector<Pose2> poses, const std::vector<EllipseObservation>& sightings) const {
   if (poses.size() <= kMaxSeeds) return poses;
@@ -168,14 +181,16 @@ std::vector<Pose2> Relocalizer::best_supported(
   order.reserve(poses.size());
   for (std::size_t i = 0; i < poses.size(); ++i)
     order.emplace_back(-supporters(poses[i], places), i);
-  std::nth_element(order.begin(), order.begin() + kMaxSeeds, order.end());
-  order.resize(kMaxSeeds);
-  std::sort(order.begin(), order.end(),
-            [](const auto& a, const auto& b) { return a.second < b.second; });
-  std::vector<Pose2> kept;
-  kept.reserve(kMaxSeeds);
-  for (const auto& [support, i] : order) kept.push_back(poses[i]);
-  return kept;
+  std::sort(order.begin(), order.end());
+  std::vector<Pose2> chosen;
+  for (const auto& [support, i] : order) {
+    const Pose2& pose = poses[i];
+    const bool known = std::any_of(chosen.begin(), chosen.end(),
+                                   [&](const Pose2& other) { return same_place(other, pose); });
+    if (!known) chosen.push_back(pose);
+    if (chosen.size() == kChosenSeeds) break;
+  }
+  return chosen;
 }
 
 std::vector<Relocalizer::DiscPlace> Relocalizer::possible_places(
@@ -192,7 +207,7 @@ std::vector<Relocalizer::DiscPlace> Relocalizer::possible_places(
 }
 
 int Relocalizer::supporters(const Pose2& pose, const std::vector<DiscPlace>& places) {
-  const Eigen::Rotation2Dd turn(pose.theta);
+  const Eigen::Matrix2d turn = Eigen::Rotation2Dd(pose.theta).toRotationMatrix();
   constexpr auto kNone = static_cast<std::size_t>(-1);
   std::size_t counted = kNone;
   int count = 0;

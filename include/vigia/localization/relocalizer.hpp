@@ -87,7 +87,7 @@ class Relocalizer {
     double log_weight = 0.0;
   };
 
-  std::vector<Pose2> seeds(const std::vector<EllipseObservation>& sightings,
+  std::vector<Pose2> seeds(const std::vector<EllipseObservation>& all,
                            const std::optional<Prior>& prior) const;
   /// Where a sighting stands in the base frame if it is that landmark.
   struct DiscPlace {
