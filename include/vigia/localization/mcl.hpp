@@ -48,17 +48,17 @@ struct MclParams {
 struct Particle {
   Pose2 pose;
   double weight = 0.0;
+  double twin = 0.0;  ///< probability that the robot is half a turn from the pose instead
 };
 
 /// Monte Carlo localization (Dellaert, Fox, Burgard, Thrun 1999; Minho §II.A): move the particles
 /// by odometry and its noise, drawn with the image in view (Grisetti, Stachniss, Burgard 2007),
 /// weigh them by the likelihood of the observation, resample (low variance, size by KLD). Poses
 /// that the present image suggests are injected as samples of a mixture prior – mostly the
-/// particles', a little uniform – weighed by the same likelihood, clusters far apart by
-/// FieldModel::line_evidence().
+/// particles', a little uniform – weighed by the same likelihood, FieldModel::line_evidence().
 ///
-/// On a field that half a turn leaves as it is, likelihoods never tell a pose from its twin: the
-/// particles follow one of the two and the twin's weight is kept beside them.
+/// Where half a turn changes no line, points never tell a pose from its twin: a particle stands for
+/// both, with the probability of each beside it (Rao–Blackwellised), which goals and posts move.
 class Mcl {
  public:
   Mcl(const FieldModel& model, const MclParams& params, std::uint64_t seed);
@@ -77,14 +77,18 @@ class Mcl {
   };
   void sample_uniform(int count);
   Spread spread_of_all() const;
-  double log_weight(const FieldScan& scan, const Pose2& pose) const;
+  /// Log-likelihood of the scan; moves the particle's odds of being half a turn away.
+  double log_weight(const FieldScan& scan, Particle& particle) const;
+  double log_weight_of_sightings(const FieldScan& scan, Particle& particle) const;
   /// Log weights of the noise's densities over the proposals'.
   std::vector<double> draw_motion_noise(const FieldScan& scan);
-  void inject(const FieldScan& scan, const Pose2& before);
-  void correct_between_clusters(const FieldScan& scan);
+  void inject(const FieldScan& scan);
+  void inject_about(const FieldFix& fix, int count, double log_prior, const FieldScan& scan);
+  void fold_twins();
   void resample();
   void spread_copies();
   void widen_depleted(const FieldScan& scan);
+  std::vector<PoseHypothesis> hypotheses() const;
   void refresh_belief();
   void watch_likelihood(const FieldScan& scan);
 
@@ -94,6 +98,7 @@ class Mcl {
   RandomStream random_;
   std::vector<Particle> particles_;
   std::vector<double> log_likelihoods_;
+  std::vector<StraightGroup> groups_;  ///< of the present scan
   /// Of the moves since the last image, not yet drawn: covariance in the particle's own frame.
   Eigen::Matrix3d motion_noise_ = Eigen::Matrix3d::Zero();
   bool given_prior_ = false;
@@ -101,7 +106,6 @@ class Mcl {
   std::optional<double> fast_;
   std::optional<double> slow_;
   int since_check_ = 0;
-  double twin_weight_ = 0.0;
   Belief belief_;
 };
 
