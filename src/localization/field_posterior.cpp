@@ -14,6 +14,11 @@
 namespace vigia::localization {
 namespace {
 
+// Of the lattice against the fix, in steps. A sum with a node on a Gaussian's middle understates
+// its variance, by 3 % at 1.7 σ a step, one midway overstates it; in between the first term of the
+// error vanishes. A filter that sums at every update adds the error up.
+constexpr double kShift = 0.25;
+
 using LatticeSite = std::array<int, 3>;
 
 /// What the lattice sums.
@@ -33,7 +38,8 @@ std::vector<Node> grown_lattice(const Eigen::Matrix3d& basis, const FieldPosteri
   for (std::size_t next = 0;
        next < queue.size() && nodes.size() < static_cast<std::size_t>(params.max_nodes); ++next) {
     const LatticeSite site = queue[next];
-    const Eigen::Vector3d off = basis * Eigen::Vector3d(site[0], site[1], site[2]);
+    const Eigen::Vector3d off =
+        basis * Eigen::Vector3d(site[0] + kShift, site[1] + kShift, site[2] + kShift);
     nodes.push_back({off, log_density(off)});
     highest = std::max(highest, nodes.back().log_density);
     if (nodes.back().log_density < highest - params.depth) continue;
