@@ -15,21 +15,25 @@ constexpr double kRareGrowth = 5.0;  // median deviations as σ
 constexpr double kRareOffset = 3.0;
 constexpr double kRareSplit = 4.5;
 constexpr double kRareTint = 3.0;
-constexpr double kRareNoise = 1.0;  // beyond the median
-constexpr double kRareSigma = 1.0;  // beyond the median
-constexpr double kAlike = 0.03;     // px
+// And beyond the median, as a share of it.
+constexpr double kRareNoise = 1.0;
+constexpr double kRareFaintNoise = 2.5;
+constexpr double kRareSigma = 1.0;
+// Below these all dots are alike.
+constexpr double kAlike = 0.03;  // px
 constexpr double kTintAlike = 0.02;
 constexpr double kOtherInk = 0.25;  // between the tints of two inks
 constexpr double kSigmaOfDeviation = 1.4826;
 
 /// One dot's features.
 struct Features {
-  double growth = 0.0;  ///< of the rim against the plane, px
-  double offset = 0.0;  ///< of the centre against the plane, px
-  double split = 0.0;   ///< of the channels' centres, the largest, px
-  double noise = 0.0;   ///< about the fitted profile, grey levels
-  double sigma = 0.0;   ///< stated error of the centre, px
-  double tint = 0.0;    ///< distance to the nearest tint of the ring's others; 0: none is near
+  double growth = 0.0;       ///< of the rim against the plane, px
+  double offset = 0.0;       ///< of the centre against the plane, px
+  double split = 0.0;        ///< of the channels' centres, the largest, px
+  double noise = 0.0;        ///< about the fitted profile, grey levels
+  double faint_noise = 0.0;  ///< of the channel that the dot absorbs least
+  double sigma = 0.0;        ///< stated error of the centre, px
+  double tint = 0.0;         ///< distance to the nearest tint of the ring's others; 0: none is near
 };
 
 double split_of(const DotPulls& pulls, const ChromaticShift& shift) {
@@ -47,6 +51,12 @@ double split_of(const DotPulls& pulls, const ChromaticShift& shift) {
 Eigen::Array3d tint_of(const ColourLevels& levels) {
   const Eigen::Array3d absorbed = 1.0 - levels.dot / levels.ground.max(1.0);
   return absorbed / std::max(absorbed.maxCoeff(), 1e-6);
+}
+
+double faint_noise(const ColourLevels& levels) {
+  Eigen::Index faintest = 0;
+  (levels.ground - levels.dot).minCoeff(&faintest);
+  return levels.noise[faintest];
 }
 
 double nearest_tint(const std::array<DotFit, kPatternDots>& dots, std::size_t place) {
@@ -85,6 +95,7 @@ Company company_of(const std::vector<Features>& ring) {
   company.median.offset = ring_median(ring, [](const Features& f) { return f.offset; });
   company.median.split = ring_median(ring, [](const Features& f) { return f.split; });
   company.median.noise = ring_median(ring, [](const Features& f) { return f.noise; });
+  company.median.faint_noise = ring_median(ring, [](const Features& f) { return f.faint_noise; });
   company.median.sigma = ring_median(ring, [](const Features& f) { return f.sigma; });
   company.median.tint = ring_median(ring, [](const Features& f) { return f.tint; });
   company.growth_deviation = kSigmaOfDeviation * ring_median(ring, [=](const Features& f) {
@@ -104,9 +115,10 @@ double oddness(const Features& dot, const Company& company) {
   const double split = dot.split / (company.median.split + kAlike) / kRareSplit;
   const double tint = dot.tint / (company.median.tint + kTintAlike) / kRareTint;
   const double noise = excess(dot.noise, company.median.noise) / kRareNoise;
+  const double faint = excess(dot.faint_noise, company.median.faint_noise) / kRareFaintNoise;
   const double sigma = excess(dot.sigma, company.median.sigma) / kRareSigma;
   return std::sqrt(growth * growth + offset * offset + split * split + tint * tint + noise * noise +
-                   sigma * sigma);
+                   faint * faint + sigma * sigma);
 }
 
 }  // namespace
@@ -128,6 +140,7 @@ std::array<double, kPatternDots> oddness_of(const std::array<DotFit, kPatternDot
     features[i].offset = (dots[i].shape.centre - expected[i].centre).norm();
     features[i].split = split_of(dots[i].pulls, shift);
     features[i].noise = dots[i].levels.noise.matrix().norm();
+    features[i].faint_noise = faint_noise(dots[i].levels);
     features[i].sigma = std::sqrt(0.5 * dots[i].centre_covariance.trace());
     if (i > 0) features[i].tint = nearest_tint(dots, i);
     if (i > 0) ring.push_back(features[i]);
