@@ -8,6 +8,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
 
 #include "vigia/core/angle.hpp"
 
@@ -53,6 +54,17 @@ std::vector<Node> grown_lattice(const Eigen::Matrix3d& basis, const FieldPosteri
   return nodes;
 }
 
+/// @p covariance with no variance below @p least in steps of the lattice: a hill that is narrower
+/// than a step can lie between the nodes.
+Eigen::Matrix3d not_narrower(const Eigen::Matrix3d& covariance, const Eigen::Matrix3d& basis,
+                             double least) {
+  const Eigen::Matrix3d into_steps = basis.inverse();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes;
+  axes.computeDirect(into_steps * covariance * into_steps.transpose());
+  const Eigen::Matrix3d root = basis * axes.eigenvectors();
+  return root * axes.eigenvalues().cwiseMax(least).asDiagonal() * root.transpose();
+}
+
 }  // namespace
 
 FieldPosterior posterior_about(const FieldModel& model, const std::vector<FieldPoint>& points,
@@ -90,7 +102,9 @@ FieldPosterior posterior_about(const FieldModel& model, const std::vector<FieldP
     squares += weight * node.off * node.off.transpose();
   }
   mean /= sum;
-  return {Pose2::from_vector(fix.pose.vector() + mean), squares / sum - mean * mean.transpose(),
+  const Eigen::Matrix3d covariance = squares / sum - mean * mean.transpose();
+  return {Pose2::from_vector(fix.pose.vector() + mean),
+          not_narrower(covariance, basis, 1.0 / (params.step_sigmas * params.step_sigmas)),
           highest + std::log(sum * std::abs(basis.determinant())), static_cast<int>(nodes.size())};
 }
 
