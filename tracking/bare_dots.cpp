@@ -77,8 +77,8 @@ double median_of(std::vector<double> values) {
 /// The median of one feature over the ring's dots.
 template <typename Feature>
 double ring_median(const std::vector<Features>& ring, Feature feature) {
-  std::vector<double> values;
-  for (const Features& dot : ring) values.push_back(feature(dot));
+  std::vector<double> values(ring.size());
+  std::transform(ring.begin(), ring.end(), values.begin(), feature);
   return median_of(std::move(values));
 }
 
