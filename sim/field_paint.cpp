@@ -24,12 +24,17 @@ float share_inside_side(float d) {
   return 0.5F + 0.5F * std::erf(d * 0.70710678F);
 }
 
-/// What lies between two parallel sides, in σ along the normal from the pixel.
+}  // namespace
+
+/// What lies between two parallel sides, in σ along the normal from the pixel. A Strip has them, so
+/// it has no place in an anonymous namespace.
 struct Band {
   Eigen::Vector2f normal = Eigen::Vector2f::UnitX();
   float from = -kTails;
   float to = kTails;
 };
+
+namespace {
 
 /// Share of a Gaussian inside two bands: a rectangle of the normal distribution of two variables
 /// that are correlated as the bands' normals are, by Gauss's rule in two halves over the narrower.
