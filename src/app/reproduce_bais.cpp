@@ -382,11 +382,13 @@ void add_sweep(const BaisRun& run, const Sweep& sweep) {
   write_curve_chart(run.options.out / fmt::format("sweep-{}.png", sweep.file), chart);
 }
 
-/// Mean position error of poses that took the calibration for exact.
-double uncorrected_cm(const std::vector<CornerDrive>& drives) {
+/// Mean position error of poses that took the calibration for exact: all, or those that are `found`
+/// with the calibration estimated.
+double uncorrected_cm(const std::vector<CornerDrive>& drives, bool all) {
   std::vector<double> off;
   for (const CornerDrive& drive : drives)
-    if (drive.uncorrected) off.push_back(kToCm * drive.uncorrected->head<2>().norm());
+    if (drive.uncorrected && (all || drive.status == StationFixStatus::found))
+      off.push_back(kToCm * drive.uncorrected->head<2>().norm());
   return evaluation::spread_of(off).mean;
 }
 
@@ -401,11 +403,12 @@ void add_drives(const BaisRun& run, const CornerSetting& setting, const std::str
   const auto drives = evaluation::study_corner_drives(setting, points, kCornerSeed, run.count(own),
                                                       run.options.threads);
   const BoundRatio judged = evaluation::drive_ratio(drives);
-  const double uncorrected = uncorrected_cm(drives);
+  const double uncorrected = uncorrected_cm(drives, false);
   curves.blind.points.emplace_back(points, uncorrected);
   curves.aware.points.emplace_back(points, kToCm * judged.mean_m);
-  run.add_best(where + ", taken for exact: position, mean", "cm", uncorrected,
-               static_cast<int>(drives.size()));
+  run.add_best(where + ", taken for exact, ungated: position, mean", "cm",
+               uncorrected_cm(drives, true), static_cast<int>(drives.size()));
+  run.add_best(where + ", taken for exact: position, mean", "cm", uncorrected, judged.n);
   PaperRow& row = run.add(where + ", estimated: position, mean", "cm", judged.n);
   row.best = kToCm * judged.mean_m;
   row.limit = kToCm * judged.bound_mean_m;

@@ -339,6 +339,12 @@ std::optional<Mode> mode_at(const StationChain& chain, Descent descent) {
   return mode;
 }
 
+/// Whether both are one minimum, reached to different depths.
+bool same_minimum(const Mode& a, const Mode& b) {
+  const Eigen::Vector3d e = difference(a.pose.pose, b.pose.pose);
+  return e.dot(a.pose.covariance.ldlt().solve(e)) < 0.0625;
+}
+
 /// The distinct minima, the likelier first.
 std::vector<Mode> modes_of(const StationChain& chain, const std::vector<Pairing>& pairings,
                            const StationFixParams& params) {
@@ -350,7 +356,7 @@ std::vector<Mode> modes_of(const StationChain& chain, const std::vector<Pairing>
     if (!at) continue;
     auto mode = mode_at(chain, descend(chain, state, *at, params));
     const bool known = mode && std::any_of(modes.begin(), modes.end(), [&](const Mode& other) {
-                         return difference(other.pose.pose, mode->pose.pose).norm() < 1e-4;
+                         return same_minimum(other, *mode);
                        });
     if (mode && !known) modes.push_back(*std::move(mode));
   }

@@ -114,10 +114,10 @@ TEST(StationFix, BelowTheGateOfSineGammaItSaysDegenerate) {
   EXPECT_LT(fix.sin_gamma, 0.3);
 }
 
-TEST(StationFix, AWayAcrossTheLineOfSightNotLongerThanTheRangesErrorsLeavesTwoPoses) {
-  const std::vector<Pose2> across{{0.1, -0.35, 0.1}, {0.12, 0.25, 0.0}};
-  StationChain chain = exact_chain(across, {2, 2}, MotionFrame::world);
-  for (auto& sighting : chain.sightings) sighting.sigma_px = 0.5;
+TEST(StationFix, AWayNotMuchLongerThanTheRangesErrorsLeavesTwoPoses) {
+  const std::vector<Pose2> across{{0.078, -0.254, -0.42}, {0.431, 0.189, -0.80}};
+  StationChain chain = exact_chain(across, {3, 3}, MotionFrame::world);
+  for (auto& sighting : chain.sightings) sighting.sigma_px = 1.2;
   const StationFix fix = station_fix(chain);
   EXPECT_EQ(fix.status, StationFixStatus::ambiguous);
   ASSERT_EQ(fix.hypotheses.size(), 2U);
