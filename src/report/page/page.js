@@ -10,11 +10,11 @@
   const dashes = [[], [8, 4], [3, 3], [10, 3, 2, 3], [1, 3], [14, 4]];
   const tracks = [];  // one for each localizer of each run
   runs.forEach((run, r) => {
-    run.localizers.forEach((localizer, k) => {
-      const several = runs.length > 1;
+    const several = runs.length > 1;
+    run.localizers.forEach((localizer) => {
       tracks.push({
         run, localizer, index: tracks.length,
-        label: several ? `${run.name} #${r + 1}: ${localizer.name}` : localizer.name,
+        label: several ? `#${r + 1} ${localizer.name}` : localizer.name,
         shown: !several || localizer.primary,
       });
     });
@@ -492,7 +492,7 @@
         to.drawImage(image, 0, 0, canvas.width, canvas.height);
         drawOverlay(to, camera.images[i].overlay, canvas.width / camera.width);
         const lines = [`t = ${camera.images[i].t.toFixed(2)} s`, ...camera.images[i].overlay.lines];
-        caption.textContent = (runs.length > 1 ? `${run.name} #${r + 1}, ` : "") + camera.name + " · " + lines.join(" · ");
+        caption.textContent = (runs.length > 1 ? `#${r + 1} ${run.name}, ` : "") + camera.name + " · " + lines.join(" · ");
       };
       pictures.push(picture);
       listeners.push(picture.draw);
@@ -641,11 +641,11 @@
     const top = (values) => { const sorted = values.filter((v) => v !== null && isFinite(v)).sort((a, b) => a - b); return sorted.length ? sorted[sorted.length - 1] : 1; };
     const bands = runs.length > 1 ? [] : primary.map((track) => ({
       label: "3σ of " + track.localizer.name, t: track.run.t, values: track.localizer.sigma.map((v) => 300 * v), colour: "muted", fill: true, width: 0.8 }));
-    const boundOf = primary.map((track) => ({ label: runs.length > 1 ? "limit " + track.label : "limit (√PCRLB)", t: track.run.t,
-      values: track.localizer.bound.map((v) => 100 * v), colour: "c2", dash: [2, 3], width: 1.4 }));
+    const boundOf = primary.map((track) => ({ label: runs.length > 1 ? "limit of " + track.label : "limit (√PCRLB)", t: track.run.t,
+      values: track.localizer.bound.map((v) => 100 * v), colour: runs.length > 1 ? colour(track) : "c2", dash: [2, 3], width: 1.4 }));
     const shown = errors(primary);
     const highest = 1.1 * Math.max(3 * top(boundOf.flatMap((s) => s.values)), top(shown.flatMap((s) => s.values)));
-    chart("Position error", "what the driving localizer is off by, its own 3σ, and the posterior Cramér–Rao bound (mean size); blue: a look",
+    chart("Position error", "what the driving localizer is off by, its own 3σ, and the root of the posterior Cramér–Rao bound’s trace; shaded: looks, stops, lost",
           "cm", [...bands, ...shown, ...boundOf], { range: (u, low, high) => [0, Math.min(high, highest) || 1] });
     if (tracks.length > primary.length)
       chart("Position error, every localizer", "", "cm", errors(tracks), { range: (u, low, high) => [0, 1.05 * high || 1] });
@@ -674,7 +674,8 @@
     $("subtitle").textContent = data.subtitle;
     const footer = $("footer");
     for (const run of runs) {
-      const line = element("p", {}, `${run.name}, seed ${run.seed}, vigia ${run.version}: `, element("code", {}, run.command));
+      const number = runs.length > 1 ? `#${runs.indexOf(run) + 1} ` : "";
+      const line = element("p", {}, `${number}${run.name}, seed ${run.seed}, vigia ${run.version}: `, element("code", {}, run.command));
       footer.append(line);
       if (run.note) footer.append(element("p", {}, run.note));
     }
