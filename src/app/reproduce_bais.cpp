@@ -240,10 +240,10 @@ void add_likeliest_rows(const BaisRun& run, const std::string& where,
   }
 }
 
-/// Counts in 25 bins as a stair.
+/// Counts in 40 bins as a stair.
 report::Curve stair(const std::string& name, const std::vector<double>& errors, double top,
                     double factor) {
-  constexpr int kBins = 25;
+  constexpr int kBins = 40;
   std::array<int, kBins> counts{};
   for (const double e : errors) {
     const int bin = static_cast<int>(factor * std::abs(e) / top * kBins);
@@ -428,9 +428,11 @@ void add_calibration(const BaisRun& run) {
                            "mean position error at the last, cm",
                            {}};
   for (const ImageKind& image : {kImages[0], kImages[2]}) {
+    const char* short_name =
+        image.columns == CornerSetting::Columns::noisy ? image.name : "whole px";
     CalibrationCurves curves{
-        {fmt::format("taken for exact, {}", image.name), {}},
-        {fmt::format("estimated, {}", image.name), {}, report::Curve::Look::dashed}};
+        {fmt::format("uncorrected, {}", short_name), {}},
+        {fmt::format("estimated, {}", short_name), {}, report::Curve::Look::dashed}};
     CornerSetting setting = setting_of(640, image);
     setting.calibration_sigma = kCalibrationSigma;
     CalibrationCurves two;
