@@ -1,0 +1,96 @@
+#include "tracking/mirror_photo.hpp"
+#include "tracking/photograph.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <opencv2/imgproc.hpp>
+
+#include "vigia/core/random.hpp"
+#include "vigia/imaging/image_frame.hpp"
+#include "vigia/tracking/field_picture_run.hpp"
+#include "vigia/tracking/panorama.hpp"
+
+namespace vigia::tracking {
+namespace {
+
+/// A mirror on a bright ceiling, seen by a camera whose noise and JPEG are those of a cheap one.
+imaging::ImageFrame mirror_picture(testing::MirrorScene& scene) {
+  scene = testing::field_scene();
+  scene.at = {0.5, -0.4};
+  cv::Mat3f light = scene.render();
+  for (int v = 0; v < light.rows; ++v)
+    for (int u = 0; u < light.cols; ++u)
+      if (std::hypot(u - scene.u0, v - scene.v0) > scene.edge_px)
+        light(v, u) = cv::Vec3f(0.6F, 0.6F, 0.62F);
+  testing::PhotoParams params;
+  params.fine = 1;
+  params.white = 0.95;
+  params.noise = 3.0;
+  params.jpeg = 92;
+  params.response = testing::PhotoParams::Response::srgb;
+  RandomStream random(3, "noise");
+  return imaging::ImageFrame(testing::photograph(light, params, random));
+}
+
+TEST(FieldPicture, ShowsMirrorLinesAndGoalsWithoutAnyMark) {
+  testing::MirrorScene scene;
+  const auto frame = mirror_picture(scene);
+  const FieldPicture found = scan_field_picture(frame, {});
+  ASSERT_EQ(found.status, FeatureStatus::found);
+  EXPECT_NEAR(found.mirror.centre.x(), scene.u0, 1.0);
+  EXPECT_NEAR(found.mirror.centre.y(), scene.v0, 1.0);
+  EXPECT_NEAR(found.mirror.outer_px, scene.edge_px, 1.5);
+  EXPECT_NEAR(found.mirror.inner_px, scene.body_px, 3.0);
+  EXPECT_GT(found.scan.points.size(), 60U);
+  EXPECT_EQ(found.scan.goals.size(), 2U);
+}
+
+TEST(FieldPicture, IsNoneWhereThereIsNoMirror) {
+  const auto count = [](const vpImage<vpRGBa>& image) {
+    return features_in(scan_field_picture(imaging::ImageFrame(image), {}));
+  };
+  EXPECT_EQ(count(vpImage<vpRGBa>(480, 640, vpRGBa(235, 235, 235))), 0);
+  EXPECT_EQ(count(vpImage<vpRGBa>(480, 640, vpRGBa(60, 150, 70))), 0);
+  // A page of text, and a circle without a field.
+  vpImage<vpRGBa> page(480, 640, vpRGBa(250, 250, 250));
+  cv::Mat canvas(480, 640, CV_8UC4, page.bitmap);
+  for (int line = 30; line < 470; line += 18)
+    cv::putText(canvas, "the quick brown fox jumps over the lazy dog", {10, line},
+                cv::FONT_HERSHEY_SIMPLEX, 0.6, {20, 20, 20, 255}, 1, cv::LINE_AA);
+  EXPECT_EQ(count(page), 0);
+  cv::circle(canvas, {320, 240}, 200, {90, 60, 40, 255}, cv::FILLED, cv::LINE_AA);
+  EXPECT_EQ(count(page), 0);
+}
+
+TEST(FieldPicture, HasOneLineOfTheTableForTheMirrorAndEachFeature) {
+  testing::MirrorScene scene;
+  const FieldPicture found = scan_field_picture(mirror_picture(scene), {});
+  const std::string lines = field_csv_lines(found, "start,");
+  std::size_t feet = 0;
+  for (const auto* spans : {&found.scan.goals, &found.scan.posts})
+    for (const ColourSpan& span : *spans) feet += span.feet.size();
+  EXPECT_EQ(static_cast<std::size_t>(std::count(lines.begin(), lines.end(), '\n')),
+            1 + found.scan.points.size() + feet);
+  // Every line has a field for each column.
+  const std::string header = field_csv_header();
+  const auto columns = std::count(header.begin(), header.end(), ',') + 1;
+  const auto rows = std::count(lines.begin(), lines.end(), '\n');
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), ','), rows * columns);
+}
+
+TEST(Panorama, HasTheImagesUAxisInItsMiddle) {
+  vpImage<vpRGBa> image(200, 200, vpRGBa(0, 0, 0));
+  cv::Mat canvas(200, 200, CV_8UC4, image.bitmap);
+  cv::circle(canvas, {160, 100}, 6, {255, 0, 0, 255}, cv::FILLED);
+  const vpImage<vpRGBa> unwrapped =
+      unwrapped_panorama(imaging::ImageFrame(image), {{100.0, 100.0}, 20.0, 80.0});
+  ASSERT_EQ(unwrapped.getHeight(), 60U);
+  EXPECT_GT(unwrapped[20][unwrapped.getWidth() / 2].R, 200);
+  EXPECT_EQ(unwrapped[20][unwrapped.getWidth() / 4].R, 0);
+}
+
+}  // namespace
+}  // namespace vigia::tracking
