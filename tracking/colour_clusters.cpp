@@ -122,13 +122,45 @@ void take_white(const std::vector<ClusterPixel>& pixels, FieldColours& colours) 
                            : Eigen::Vector3d::Constant(std::min(255.0, 1.3 * green));
 }
 
+/// Yellow where a greenish light has taken it towards green: the strongest hue from the range that
+/// it has by itself to the rim of the carpet's, if it is that of enough pixels and not of mixtures
+/// of the two.
+void take_yellow(const std::vector<ClusterPixel>& pixels, FieldColours& colours) {
+  constexpr double kNearHue = from_deg(6.0);
+  constexpr double kLeastShare = 0.002;
+  constexpr double kLeastCore = 0.5;  // of the pixels of the range
+  const double low = colours.yellow.hue - colours.yellow.half_width;
+  const double high = colours.green.hue - colours.green.half_width;
+  if (high <= colours.yellow.hue + colours.yellow.half_width) return;
+  HueRange wide = colours.yellow;
+  wide.hue = 0.5 * (low + high);
+  wide.half_width = 0.5 * (high - low);
+  const double hue = strongest_hue(pixels, wide);
+  std::size_t core = 0;
+  std::size_t all = 0;
+  for (const ClusterPixel& pixel : pixels) {
+    const HueColour& c = pixel.colour;
+    if (c.saturation < wide.min_saturation || c.value < wide.min_value) continue;
+    if (std::abs(wrap_angle(c.hue - wide.hue)) > wide.half_width) continue;
+    ++all;
+    core += std::abs(wrap_angle(c.hue - hue)) <= kNearHue ? 1 : 0;
+  }
+  if (static_cast<double>(core) < kLeastShare * static_cast<double>(pixels.size()) ||
+      static_cast<double>(core) < kLeastCore * static_cast<double>(all))
+    return;
+  colours.yellow.hue = hue;
+  colours.yellow.half_width = std::min(colours.yellow.half_width, high - hue);
+}
+
 }  // namespace
 
 FieldColours cluster_field_colours(const imaging::Frame& frame, const MirrorImage& mirror,
                                    const FieldColours& start) {
   const std::vector<ClusterPixel> pixels = mirror_pixels(frame, mirror);
   FieldColours colours = start;
-  if (take_green(pixels, colours)) take_white(pixels, colours);
+  if (!take_green(pixels, colours)) return colours;
+  take_white(pixels, colours);
+  take_yellow(pixels, colours);
   return colours;
 }
 

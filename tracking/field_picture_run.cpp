@@ -42,7 +42,8 @@ FieldPicture scan_field_picture(const imaging::Frame& picture, const FieldPictur
   if (!mirror) return found;
   found.mirror = *mirror;
   const FieldPalette palette(cluster_field_colours(picture, *mirror));
-  RadialScan scan = RadialScanner(*mirror, palette, params.scan).scan(picture);
+  if (!params.mirror) found.mirror.inner_px = robot_radius(picture, *mirror, palette);
+  RadialScan scan = RadialScanner(found.mirror, palette, params.scan).scan(picture);
   if (scan.light != LightStatus::in_range) {
     found.status = FeatureStatus::low_contrast;
     return found;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -87,34 +88,44 @@ Circle refined(const cv::Mat1b& grey, Circle circle) {
   return circle;
 }
 
-/// Shares of green on circles of the frame about a middle, one a pixel of radius.
-std::vector<double> green_shares(const vpImage<vpRGBa>& colour, const FieldPalette& palette,
-                                 const Eigen::Vector2d& centre, double radius) {
+/// Shares of carpet on circles of the picture about a middle, one a pixel of radius: of green of
+/// some brightness.
+std::vector<double> carpet_shares(const vpImage<vpRGBa>& colour, const FieldPalette& palette,
+                                  const MirrorImage& mirror, double min_value) {
   std::vector<double> shares;
-  for (int r = 0; r <= static_cast<int>(radius); ++r) {
-    int green = 0;
+  for (int r = 0; r <= static_cast<int>(mirror.outer_px); ++r) {
+    int carpet = 0;
     for (int k = 0; k < kOutlineAngles; ++k) {
-      const Eigen::Vector2d uv = centre + r * outline_direction(k);
+      const Eigen::Vector2d uv = mirror.centre + r * outline_direction(k);
       const int u = static_cast<int>(std::lround(uv.x()));
       const int v = static_cast<int>(std::lround(uv.y()));
       if (u < 0 || v < 0 || u >= static_cast<int>(colour.getWidth()) ||
           v >= static_cast<int>(colour.getHeight()))
         continue;
-      green += palette(colour[static_cast<unsigned>(v)][u]) == FieldClass::green ? 1 : 0;
+      const vpRGBa& pixel = colour[static_cast<unsigned>(v)][u];
+      carpet += palette(pixel) == FieldClass::green && pixel.G >= min_value ? 1 : 0;
     }
-    shares.push_back(static_cast<double>(green) / kOutlineAngles);
+    shares.push_back(static_cast<double>(carpet) / kOutlineAngles);
   }
   return shares;
 }
 
-/// From the greenest circle inwards to where less than half is green. In the very middle the mirror
-/// shows the camera, whose glass may be green.
-double body_radius(const std::vector<double>& shares) {
-  constexpr std::ptrdiff_t kCameraShare = 6;
-  const auto from = shares.begin() + static_cast<std::ptrdiff_t>(shares.size()) / kCameraShare;
-  auto r = std::max_element(from, shares.end()) - shares.begin();
-  while (r > 0 && shares[static_cast<std::size_t>(r)] >= 0.5) --r;
-  return static_cast<double>(r + 1);
+/// Of the shares within a few places of each the one that comes first by @p before.
+template <typename Before>
+std::vector<double> extremes(const std::vector<double>& shares, Before before) {
+  constexpr std::ptrdiff_t kThin = 4;  // px to either side
+  std::vector<double> out;
+  const auto count = static_cast<std::ptrdiff_t>(shares.size());
+  for (std::ptrdiff_t r = 0; r < count; ++r)
+    out.push_back(*std::min_element(shares.begin() + std::max<std::ptrdiff_t>(0, r - kThin),
+                                    shares.begin() + std::min(count, r + kThin + 1), before));
+  return out;
+}
+
+/// The shares without gaps of a few pixels of radius: a circle that is painted about the robot is
+/// thin.
+std::vector<double> without_thin_circles(const std::vector<double>& shares) {
+  return extremes(extremes(shares, std::greater<>()), std::less<>());
 }
 
 cv::Mat1b small_grey(const imaging::Frame& frame, double scale) {
@@ -159,14 +170,28 @@ std::optional<MirrorImage> find_mirror(const imaging::Frame& frame, const FieldP
     MirrorImage mirror;
     mirror.centre = (circle.centre + Eigen::Vector2d(0.5, 0.5)) / scale - Eigen::Vector2d(0.5, 0.5);
     mirror.outer_px = circle.radius / scale;
-    const std::vector<double> shares =
-        green_shares(colour, palette, mirror.centre, mirror.outer_px);
+    const std::vector<double> shares = carpet_shares(colour, palette, mirror, 0.0);
     if (*std::max_element(shares.begin(), shares.end()) < kLeastGreen) continue;
-    mirror.inner_px = body_radius(shares);
     best_score = score;
     best = mirror;
   }
   return best;
+}
+
+double robot_radius(const imaging::Frame& frame, const MirrorImage& mirror,
+                    const FieldPalette& palette) {
+  constexpr double kLeastShare = 0.7;         // of the greenest circle's carpet
+  constexpr double kLeastLight = 0.6;         // of the carpet's
+  constexpr std::ptrdiff_t kCameraShare = 6;  // of the mirror's radius
+  const std::vector<double> shares =
+      without_thin_circles(carpet_shares(imaging::colour_image(frame), palette, mirror,
+                                         kLeastLight * palette.colours().green_mean.maxCoeff()));
+  // In the very middle the mirror shows the camera, whose glass may be green.
+  const auto from = shares.begin() + static_cast<std::ptrdiff_t>(shares.size()) / kCameraShare;
+  const auto greenest = std::max_element(from, shares.end());
+  auto r = greenest - shares.begin();
+  while (r > 0 && shares[static_cast<std::size_t>(r)] >= kLeastShare * *greenest) --r;
+  return static_cast<double>(r);
 }
 
 }  // namespace vigia::tracking
