@@ -369,10 +369,10 @@ void add_sweep(const BaisRun& run, const Sweep& sweep) {
     const auto by_fine = run.trials(fine, kSweepTrials);
     const BoundRatio at_whole = evaluation::likeliest_ratio(by_whole, true);
     const BoundRatio at_fine = evaluation::likeliest_ratio(by_fine, true);
-    chart.curves[0].points.emplace_back(value, published_position_cm(by_whole));
-    chart.curves[1].points.emplace_back(value, kToCm * at_whole.mean_m);
-    chart.curves[2].points.emplace_back(value, kToCm * at_fine.mean_m);
-    chart.curves[3].points.emplace_back(value, kToCm * at_fine.bound_mean_m);
+    const std::array<double, 4> means_cm{published_position_cm(by_whole), kToCm * at_whole.mean_m,
+                                         kToCm * at_fine.mean_m, kToCm * at_fine.bound_mean_m};
+    for (std::size_t i = 0; i < means_cm.size(); ++i)  // of few trials none may have a fix
+      if (means_cm.at(i) > 0.0) chart.curves[i].points.emplace_back(value, means_cm.at(i));
     PaperRow& row =
         run.add(fmt::format("VGA, 0.1 px, {}: position, mean", sweep.name(value)), "cm", at_fine.n);
     row.as_published = published_position_cm(by_fine);
