@@ -8,8 +8,6 @@
 namespace vigia::evaluation {
 namespace {
 
-using localization::StationFixStatus;
-
 CornerSetting vga(CornerSetting::Columns columns) {
   CornerSetting setting;
   setting.columns = 640;
