@@ -89,6 +89,13 @@ void describe_surfaces(ParamVisitor& v, Appearance& a) {
   v.number("clutter_per_m2", a.clutter_per_m2, {0.0, 20.0}, "marks scattered at random");
 }
 
+void describe_field_looks(ParamVisitor& v, Appearance& a) {
+  v.number("carpet_grey", a.carpet_grey, kGrey, "of the field's carpet, which is green");
+  v.number("line_grey", a.line_grey, kGrey, "of the field's lines");
+  v.integer("adverts", a.adverts, {0, 200}, "boards in bright colours round the field");
+  v.integer("spectators", a.spectators, {0, 200}, "people in bright clothes round the field");
+}
+
 void describe_stripe(ParamVisitor& v, Stripe& stripe) {
   v.vector("from_m", stripe.from, {-1e4, 1e4}, About("one end").required());
   v.vector("to_m", stripe.to, {-1e4, 1e4}, About("the other end").required());
@@ -153,8 +160,11 @@ void scatter(const WorldMap& world, Appearance& appearance) {
 }  // namespace
 
 void describe_appearance(ParamVisitor& v, const WorldMap& world, Appearance& appearance) {
-  v.map("appearance", "looks of the building; grey levels are before the light's gain",
-        [&] { describe_surfaces(v, appearance); });
+  v.map("appearance", "looks of the building; grey levels are before the light's gain", [&] {
+    describe_surfaces(v, appearance);
+    v.where(world.field.has_value(), "the world has a `field`",
+            [&] { describe_field_looks(v, appearance); });
+  });
   v.each("stripes", "straight lines painted on the floor or the ceiling",
          [&] { describe_stripe(v, appearance.stripes.emplace_back()); });
   v.each("clutter", "dark marks that are no landmarks",

@@ -133,6 +133,7 @@ BodyPartView::BodyPartView(const BodyPart& part, const Eigen::Isometry3d& wMc,
                  part.round ? 1.0F : 0.0F,
                  part.grey,
                  part.pattern},
+      tint_(part.tint),
       box_(image_box(part, wMc.inverse(Eigen::Isometry), model)) {}
 
 void BodyPartView::paint(const Rays& rays, int count, float* nearest, float* grey,

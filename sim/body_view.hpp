@@ -20,11 +20,13 @@ struct BodyPart {
   bool round = false;
   double taper = 0.0;
   float grey = 100.0F;
-  float pattern = 0.0F;  ///< grey levels of the cloth's pattern
+  float pattern = 0.0F;                         ///< grey levels of the cloth's pattern
+  std::array<float, 3> tint{1.0F, 1.0F, 1.0F};  ///< red, green, blue of grey 1; luma 1
 };
 
-/// The limbs of a person: shoes, legs, trunk, arms, neck, head and hair. All of them lie within
-/// radius_m of the person's axis but for the feet in the middle of a long stride.
+/// The limbs of a person: shoes, legs, trunk, arms, neck, head and hair; or the solids of a robot.
+/// All of them lie within radius_m of the figure's axis but for the feet in the middle of a long
+/// stride.
 std::vector<BodyPart> body_parts(const Person& person);
 
 /// A limb as one exposure sees it.
@@ -34,6 +36,7 @@ class BodyPartView {
 
   /// Whole pixels round the image, clipped to the frame; may be empty.
   const imaging::Window& box() const { return box_; }
+  const std::array<float, 3>& tint() const { return tint_; }
 
   /// Where rays meet the limb nearer than inverse depth nearest[i]: takes nearest[i],
   /// sets hit[i] to 1 and grey[i].
@@ -59,6 +62,7 @@ class BodyPartView {
                         float* grey, unsigned char* hit);
 
   Constants constants_;
+  std::array<float, 3> tint_;
   imaging::Window box_;
 };
 

@@ -54,6 +54,14 @@ CameraErrors::CameraErrors(const DisturbanceParams& disturbances, std::uint64_t 
     drift_ = disturbances.principal_point->drift_px * unit_vector(direction);
     bow_ = bow * Eigen::Vector2d(-drift_.y(), drift_.x());
   }
+  if (disturbances.mirror) {
+    RandomStream random(seed, "mirror");
+    mirror_scale_ = disturbances.mirror->scale * random.normal();
+    const Eigen::Vector3d centre = draw3(random, disturbances.mirror->centre_px);
+    const Eigen::Vector3d tilt = draw3(random, disturbances.mirror->tilt);
+    mirror_centre_ = centre.head<2>();
+    mirror_tilt_ = tilt.head<2>();
+  }
   if (disturbances.mounting) {
     RandomStream random(seed, "mounting");
     askew_ = true;
@@ -82,17 +90,23 @@ CameraModel CameraErrors::true_model(const CameraModel& calibrated) const {
   UnifiedOmni omni = std::get<UnifiedOmni>(calibrated);
   const Intrinsics plane =
       true_intrinsics({omni.width, omni.height, omni.px, omni.py, omni.u0, omni.v0, 0.0}, kMiddle);
-  omni.px = plane.px;
-  omni.py = plane.py;
-  omni.u0 = plane.u0;
-  omni.v0 = plane.v0;
+  omni.px = plane.px * (1.0 + mirror_scale_);
+  omni.py = plane.py * (1.0 + mirror_scale_);
+  omni.u0 = plane.u0 + mirror_centre_.x();
+  omni.v0 = plane.v0 + mirror_centre_.y();
   return omni;
 }
 
-CameraMount CameraErrors::true_mount(const CameraMount& known) const {
-  const auto* fixed = std::get_if<FixedMount>(&known);
+CameraMount CameraErrors::true_mount(const Camera& known) const {
+  const auto* fixed = std::get_if<FixedMount>(&known.mount);
   const auto askew = fixed != nullptr ? mounting(fixed->rMc.translation()) : std::nullopt;
-  return std::visit(TrueMount{camera_offset_h_, askew}, known);
+  CameraMount mount = std::visit(TrueMount{camera_offset_h_, askew}, known.mount);
+  const auto* optics = std::get_if<CameraModel>(&known.optics);
+  if (optics != nullptr && std::holds_alternative<UnifiedOmni>(*optics) && fixed != nullptr)
+    std::get<FixedMount>(mount).rMc.rotate(
+        Eigen::AngleAxisd(mirror_tilt_.x(), Eigen::Vector3d::UnitX()) *
+        Eigen::AngleAxisd(mirror_tilt_.y(), Eigen::Vector3d::UnitY()));
+  return mount;
 }
 
 std::optional<Eigen::Isometry3d> CameraErrors::mounting(const Eigen::Vector3d& mount_r) const {

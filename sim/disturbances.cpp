@@ -41,6 +41,12 @@ void describe(ParamVisitor& v, PrincipalPointParams& p) {
   v.number("drift_px", p.drift_px, {0.0, 100.0}, "from one end of the zoom to the other");
 }
 
+void describe(ParamVisitor& v, MirrorParams& p) {
+  v.number("scale", p.scale, {0.0, 0.2}, "σ of the relative error of its focal length");
+  v.angle("tilt_deg", p.tilt, {0.0, 10.0}, "σ of its tilt about either axis of the image");
+  v.number("centre_px", p.centre_px, {0.0, 50.0}, "σ of either coordinate of its middle");
+}
+
 void describe(ParamVisitor& v, BacklashParams& p) {
   v.angle("width_deg", p.width, {0.0, 10.0}, "play of the encoders");
 }
@@ -69,6 +75,7 @@ void describe(ParamVisitor& v, MissingLandmarksParams& p) {
 }
 
 void describe(ParamVisitor& v, PeopleParams& p) {
+  v.choice("kind", p.kind, {"people", "robots"}, "what they look like");
   v.integer("count", p.count, {0, 50}, "of them");
   v.number("radius_m", p.radius_m, {0.1, 0.6}, "of a person");
   v.number("height_m", p.height_m, {0.5, 2.5}, "of a person");
@@ -103,6 +110,7 @@ void describe(ParamVisitor& v, DisturbanceParams& p) {
   v.toggle("zoom_calibration", p.zoom_calibration, on,
            "the table of focal lengths is a little wrong, smoothly over the zoom");
   v.toggle("principal_point", p.principal_point, on, "the optical axis wanders as the lens zooms");
+  v.toggle("mirror", p.mirror, on, "an omnidirectional camera is not quite as calibrated");
   v.toggle("backlash", p.backlash, on, "pan and tilt encoders follow the axes with play");
   v.toggle("wheel_slip", p.wheel_slip, on, "the wheels do not report what the base does");
   v.toggle("map_error", p.map_error, on, "landmarks hang a little off the place that the map has");

@@ -25,6 +25,7 @@ struct PixelRow {
   std::vector<float> grey;
   std::vector<float> other;        ///< of one surface or decal
   std::vector<float> depth;        ///< inverse, of what is seen
+  std::vector<float> paint;        ///< share of a field's lines; empty without a field
   std::vector<ViewId> winner;      ///< the surface that is seen
   std::vector<unsigned char> hit;  ///< 1 where a limb is seen
 };

@@ -12,6 +12,8 @@ namespace {
 
 void describe_base(ParamVisitor& v, RobotParams& robot) {
   v.number("radius_m", robot.radius_m, {0.01, 5.0}, "of the robot's hull");
+  v.number("body_height_m", robot.body_height_m, {0.0, 5.0},
+           "of the hull as the robot's own cameras see it; 0: they do not");
   v.number("speed_mps", robot.base.speed, {0.001, 10.0}, "at most");
   v.number("acceleration_mps2", robot.base.acceleration, {0.001, 100.0}, "at most");
   v.angle("turn_rate_deg_s", robot.base.turn_rate, {0.1, 3600.0}, "at most");

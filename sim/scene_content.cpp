@@ -1,10 +1,11 @@
 #include "scene_content.hpp"
 
-#include "lamp.hpp"
+#include "field_surfaces.hpp"
 #include "landmark_decals.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "vigia/core/random.hpp"
@@ -81,6 +82,7 @@ SceneContent::SceneContent(const WorldMap& world, const Appearance& look, std::u
   for (const Stripe& stripe : look.stripes) paint(stripe, world.plan.ceiling_m());
   for (const Clutter& clutter : look.clutter) paint(clutter);
   for (const Landmark& landmark : world.landmarks.all()) hang(landmark, look);
+  if (world.field) lay_out(*world.field, world.plan, look);
   if (look.light_kelvin != Appearance{}.light_kelvin) shine(lamp_gains(look.light_kelvin));
 }
 
@@ -127,6 +129,18 @@ void SceneContent::hang(const Landmark& landmark, const Appearance& look) {
   }
 }
 
+/// The carpet takes the floor's height; the floor itself sinks below it.
+void SceneContent::lay_out(const FieldMap& map, const FloorPlan& plan, const Appearance& look) {
+  surfaces[plan.faces().size()].origin_w.z() = -kCarpet_m;
+  const auto grey = static_cast<float>(look.line_grey);
+  field = {FieldPaint(map), {grey, {1.0F, 1.0F, 1.0F}}, surfaces.size()};
+  surfaces.push_back(carpet_surface(map, look));
+  for (auto& group : {goal_surfaces(map, look), advert_surfaces(map, plan, look)})
+    surfaces.insert(surfaces.end(), group.begin(), group.end());
+  for (auto& group : {post_parts(map), spectator_parts(map, plan, look)})
+    solids.insert(solids.end(), group.begin(), group.end());
+}
+
 /// Gives everything the lamp's colour.
 void SceneContent::shine(const std::array<float, 3>& gains) {
   for (Surface& surface : surfaces) surface.material = lit(surface.material, gains);
@@ -137,6 +151,8 @@ void SceneContent::shine(const std::array<float, 3>& gains) {
   };
   for (StripeMark& stripe : stripes) dye(stripe);
   for (Decal& decal : decals) dye(decal);
+  for (BodyPart& solid : solids) dye(solid);
+  if (field) field->ink = lit(field->ink, gains);
 }
 
 }  // namespace vigia::sim

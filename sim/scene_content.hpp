@@ -1,12 +1,16 @@
 #pragma once
 
+#include "body_view.hpp"
 #include "decal.hpp"
+#include "field_paint.hpp"
+#include "lamp.hpp"
 #include "stripe_view.hpp"
 #include "surface.hpp"
 #include "texture.hpp"
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "vigia/core/world_map.hpp"
@@ -24,8 +28,17 @@ struct SceneContent {
   std::vector<Surface> surfaces;
   std::vector<StripeMark> stripes;  ///< under the decals
   std::vector<Decal> decals;        ///< in the order in which they are painted
+  std::vector<BodyPart> solids;     ///< that stand about and do not move
+  /// The lines of a field, over everything else on its carpet.
+  struct PaintedField {
+    FieldPaint paint;
+    Ink ink;
+    std::size_t carpet;  ///< index of the surface
+  };
+  std::optional<PaintedField> field;
 
  private:
+  void lay_out(const FieldMap& map, const FloorPlan& plan, const Appearance& look);
   void paint(const Stripe& stripe, double ceiling_m);
   void paint(const Clutter& clutter);
   void hang(const Landmark& landmark, const Appearance& look);

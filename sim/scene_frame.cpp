@@ -42,10 +42,10 @@ void SceneFrame::grey_row(const Run& run, PixelRow& row, unsigned char* out) con
                        0, run.width(), out);
 }
 
-void SceneFrame::colour_row(const Run& run, PixelRow& row, vpRGBa* out) const {
+void SceneFrame::colour_row(const Run& run, PixelRow& row, ChannelRow& channel, vpRGBa* out) const {
   const int count = run.width();
-  std::vector<float> levels(static_cast<std::size_t>(count));
-  std::vector<unsigned char> bytes(levels.size());
+  std::vector<float>& levels = channel.levels;
+  std::vector<unsigned char>& bytes = channel.bytes;
   view().see(run.u_begin, run.v, count, row);
   for (int c = 0; c < 3; ++c) {
     view().expose(run.u_begin, run.v, count, row, params_.colour ? c : kGrey, levels.data());
@@ -68,8 +68,9 @@ void SceneFrame::read_grey(const Window& window, unsigned char* out, std::ptrdif
 void SceneFrame::read_colour(const Window& window, vpRGBa* out, std::ptrdiff_t stride) const {
   if (window.empty()) return;
   PixelRow row = view().row_of(window.width);
+  ChannelRow channel(window.width);
   for (int v = window.v; v < window.bottom(); ++v, out += stride)
-    colour_row(row_run(window, v), row, out);
+    colour_row(row_run(window, v), row, channel, out);
 }
 
 void SceneFrame::read_grey_runs(const std::vector<Run>& runs, unsigned char* out) const {
@@ -82,8 +83,9 @@ void SceneFrame::read_grey_runs(const std::vector<Run>& runs, unsigned char* out
 
 void SceneFrame::read_colour_runs(const std::vector<Run>& runs, vpRGBa* out) const {
   PixelRow row = view().row_of(longest(runs));
+  ChannelRow channel(longest(runs));
   for (const Run& run : runs) {
-    colour_row(run, row, out);
+    colour_row(run, row, channel, out);
     out += run.width();
   }
 }

@@ -32,7 +32,14 @@ class SceneFrame : public imaging::Frame, public Radiance {
  private:
   SceneView& view() const;
   void grey_row(const imaging::Run& run, PixelRow& row, unsigned char* out) const;
-  void colour_row(const imaging::Run& run, PixelRow& row, vpRGBa* out) const;
+  /// Room for a channel of a row.
+  struct ChannelRow {
+    explicit ChannelRow(int count)
+        : levels(static_cast<std::size_t>(count)), bytes(levels.size()) {}
+    std::vector<float> levels;
+    std::vector<unsigned char> bytes;
+  };
+  void colour_row(const imaging::Run& run, PixelRow& row, ChannelRow& channel, vpRGBa* out) const;
 
   const SceneContent& content_;
   Exposure::Instant instant_;

@@ -9,8 +9,9 @@ namespace {
 
 using imaging::Window;
 
-constexpr ViewId kPerson = 0xfffe;   ///< the winner of a pixel that shows somebody
-constexpr ViewId kNothing = 0xffff;  ///< of one that shows nothing
+constexpr ViewId kFirstLimb = 0x8000;  ///< the winner of a pixel that shows the first limb
+constexpr ViewId kNothing = 0xffff;    ///< of one that shows nothing
+constexpr std::array<float, 3> kUntinted{1.0F, 1.0F, 1.0F};
 
 VIGIA_PIXEL_LOOP
 void mix_in(const float* __restrict share, float grey, int count, float* __restrict row) {
@@ -42,11 +43,27 @@ SceneView::SceneView(const SceneContent& content, const Exposure::Instant& insta
   find_surfaces(cMw);
   find_marks(cMw);
   if (light) light_.emplace(*light, cMw);
-  for (const Person& person : instant.people) {
-    for (const BodyPart& part : body_parts(person)) {
-      const BodyPartView view(part, wMc_, model_);
-      if (!view.box().empty()) limbs_.push_back(view);
-    }
+  find_limbs(content_.solids);
+  for (const Person& person : instant.people) find_limbs(body_parts(person));
+  if (content_.field && view_of_surface_[content_.field->carpet] >= 0 && wMc_.translation().z() > 0)
+    field_.emplace(content_.field->paint, cMw, model_, params.blur_px);
+}
+
+PixelRow SceneView::row_of(int count) const {
+  PixelRow row(count, is_perspective(model_));
+  if (field_) row.paint.resize(static_cast<std::size_t>(count));
+  return row;
+}
+
+void SceneView::find_limbs(const std::vector<BodyPart>& parts) {
+  const int rows = (image_height(model_) + kTile - 1) / kTile;
+  limbs_of_rows_.resize(static_cast<std::size_t>(rows));
+  for (const BodyPart& part : parts) {
+    const BodyPartView view(part, wMc_, model_);
+    if (view.box().empty()) continue;
+    for (int row = view.box().v / kTile; row <= (view.box().bottom() - 1) / kTile; ++row)
+      limbs_of_rows_[static_cast<std::size_t>(row)].push_back(limbs_.size());
+    limbs_.push_back(view);
   }
 }
 
@@ -92,19 +109,29 @@ void SceneView::find_marks(const Eigen::Isometry3d& cMw) {
 
 void SceneView::see(int u, int v, int count, PixelRow& row) {
   see_surfaces(u, v, count, row);
-  see_people(u, v, count, row);
+  see_solids(u, v, count, row);
+  see_field(u, v, count, row);
 }
 
 void SceneView::see_surfaces(int u, int v, int count, PixelRow& row) {
   row_rays(model_, u, v, count, row.x.data(), row.y.data(), row.z.data());
+  if (u / kTile == (u + count - 1) / kTile) {
+    see_tile(*tiles_.row(u, u + count, v / kTile * kTile, surfaces_, stripes_).front(), 0, count,
+             row);
+    return;
+  }
   for (const TileSpan& span : tiles_.spans(u, u + count, v / kTile * kTile, surfaces_, stripes_)) {
     const int from = std::max(span.u, u) - u;
     const int to = std::min(span.u_end, u + count) - u;
-    if (span.tile->pure)
-      see_one(*tiles_.views_of(*span.tile), from, to - from, row);
-    else
-      see_nearest(*span.tile, from, to - from, row);
+    see_tile(*span.tile, from, to - from, row);
   }
+}
+
+void SceneView::see_tile(const Tile& tile, int first, int length, PixelRow& row) {
+  if (tile.pure)
+    see_one(*tiles_.views_of(tile), first, length, row);
+  else
+    see_nearest(tile, first, length, row);
 }
 
 void SceneView::see_one(ViewId id, int first, int length, PixelRow& row) {
@@ -137,8 +164,9 @@ void SceneView::see_nearest(const Tile& tile, int first, int length, PixelRow& r
 }
 
 /// Limbs that stand before what is painted already, and hide what hangs on it.
-void SceneView::see_people(int u, int v, int count, PixelRow& row) const {
-  for (const BodyPartView& limb : limbs_) {
+void SceneView::see_solids(int u, int v, int count, PixelRow& row) const {
+  for (const std::size_t id : limbs_of_rows_[static_cast<std::size_t>(v / kTile)]) {
+    const BodyPartView& limb = limbs_[id];
     const Window& box = limb.box();
     const int from = std::max(u, box.u);
     const int n = std::min(u + count, box.right()) - from;
@@ -148,13 +176,21 @@ void SceneView::see_people(int u, int v, int count, PixelRow& row) const {
     limb.paint(row.rays().from(from - u), n, row.depth.data() + at, row.grey.data() + at,
                row.hit.data() + at);
     for (std::size_t i = at; i < at + static_cast<std::size_t>(n); ++i)
-      if (row.hit[i] != 0) row.winner[i] = kPerson;
+      if (row.hit[i] != 0) row.winner[i] = static_cast<ViewId>(kFirstLimb + id);
   }
+}
+
+void SceneView::see_field(int u, int v, int count, PixelRow& row) const {
+  if (!field_) return;
+  const int carpet = view_of_surface_[content_.field->carpet];
+  field_->coverage(u, v, count, row.rays(), row.winner.data(), static_cast<ViewId>(carpet),
+                   row.paint.data());
 }
 
 void SceneView::expose(int u, int v, int count, PixelRow& row, int channel, float* levels) {
   tint(row, count, channel, levels);
   paint_stripes(u, v, count, row, channel, levels);
+  paint_field(count, row, channel, levels);
   paint_decals(u, v, count, row, channel, levels);
   shine(row, count, levels);
 }
@@ -164,14 +200,24 @@ void SceneView::tint(const PixelRow& row, int count, int channel, float* levels)
     if (levels != row.grey.data()) std::copy_n(row.grey.data(), count, levels);
     return;
   }
-  for (int i = 0; i < count; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    const bool tinted = row.winner[at] < surfaces_.size();
-    levels[i] =
-        row.grey[at] *
-        (tinted ? surfaces_[row.winner[at]].material->tint[static_cast<std::size_t>(channel)]
-                : 1.0F);
+  for (int i = 0; i < count;) {
+    const ViewId winner = row.winner[static_cast<std::size_t>(i)];
+    const float gain = tint_of(winner)[static_cast<std::size_t>(channel)];
+    for (; i < count && row.winner[static_cast<std::size_t>(i)] == winner; ++i)
+      levels[i] = row.grey[static_cast<std::size_t>(i)] * gain;
   }
+}
+
+const std::array<float, 3>& SceneView::tint_of(ViewId winner) const {
+  if (winner < surfaces_.size()) return surfaces_[winner].material->tint;
+  return winner == kNothing ? kUntinted : limbs_[winner - kFirstLimb].tint();
+}
+
+void SceneView::paint_field(int count, PixelRow& row, int channel, float* levels) const {
+  if (!field_) return;
+  const Ink& ink = content_.field->ink;
+  const float of_channel = channel == kGrey ? 1.0F : ink.tint[static_cast<std::size_t>(channel)];
+  mix_in(row.paint.data(), ink.grey * of_channel, count, levels);
 }
 
 void SceneView::paint_stripes(int u, int v, int count, PixelRow& row, int channel, float* levels) {

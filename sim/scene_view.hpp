@@ -26,9 +26,9 @@ class SceneView {
             const std::optional<LightNow>& light, const CameraModel& model,
             const ImagingParams& params);
 
-  PixelRow row_of(int count) const { return PixelRow(count, is_perspective(model_)); }
+  PixelRow row_of(int count) const;
   /// Finds what @p count pixels of row @p v from @p u on show: rays, winner, depth, and the grey of
-  /// surfaces and people.
+  /// surfaces and solids.
   void see(int u, int v, int count, PixelRow& row);
   /// The levels of a channel (or of kGrey) of a row that see() has seen.
   void expose(int u, int v, int count, PixelRow& row, int channel, float* levels);
@@ -36,12 +36,17 @@ class SceneView {
  private:
   void find_surfaces(const Eigen::Isometry3d& cMw);
   void find_marks(const Eigen::Isometry3d& cMw);
+  void find_limbs(const std::vector<BodyPart>& parts);
   void see_surfaces(int u, int v, int count, PixelRow& row);
+  void see_tile(const Tile& tile, int first, int length, PixelRow& row);
   void see_one(ViewId id, int first, int length, PixelRow& row);
   void see_nearest(const Tile& tile, int first, int length, PixelRow& row);
-  void see_people(int u, int v, int count, PixelRow& row) const;
+  void see_solids(int u, int v, int count, PixelRow& row) const;
+  void see_field(int u, int v, int count, PixelRow& row) const;
+  const std::array<float, 3>& tint_of(ViewId winner) const;
   void tint(const PixelRow& row, int count, int channel, float* levels) const;
   void paint_stripes(int u, int v, int count, PixelRow& row, int channel, float* levels);
+  void paint_field(int count, PixelRow& row, int channel, float* levels) const;
   void paint_decals(int u, int v, int count, PixelRow& row, int channel, float* levels);
   void mix(std::size_t surface, const std::array<float, 3>& tint, float grey, int channel, int at,
            int count, PixelRow& row, float* levels) const;
@@ -56,6 +61,8 @@ class SceneView {
   std::vector<StripeView> stripes_;
   std::vector<DecalView> decals_;
   std::vector<BodyPartView> limbs_;
+  std::vector<std::vector<std::size_t>> limbs_of_rows_;  ///< by kTile rows
+  std::optional<FieldPaintView> field_;
   std::optional<LightRows> light_;
   TileGrid tiles_;
 };

@@ -79,7 +79,7 @@ Simulator::Simulator(const RobotSetup& setup, const WorldMap& world,
   robot_.set_camera(setup_.cameras.front().camera.mount);
   for (const CameraSetup& camera : setup_.cameras) {
     const CameraErrors errors(disturbances, seed, camera.camera.id);
-    cameras_.push_back({camera, errors, errors.true_mount(camera.camera.mount)});
+    cameras_.push_back({camera, errors, errors.true_mount(camera.camera)});
   }
   disturb(disturbances, seed);
   if (setup_.range_ring) ring_.emplace(*setup_.range_ring, seed);
@@ -144,9 +144,23 @@ CameraModel Simulator::true_model(CameraId camera) const {
   return intrinsics;
 }
 
+std::vector<Person> Simulator::figures() const {
+  std::vector<Person> figures = walkers_ ? walkers_->people() : std::vector<Person>{};
+  if (setup_.robot.body_height_m <= 0.0) return figures;
+  const Bystander robot = bystander();
+  Person& own = figures.emplace_back();
+  own.figure = Figure::chassis;
+  own.position = robot.position;
+  own.velocity = robot.velocity;
+  own.heading = robot_.truth().pose.theta;
+  own.radius_m = robot.radius_m;
+  own.height_m = setup_.robot.body_height_m;
+  return figures;
+}
+
 std::vector<Exposure::Instant> Simulator::instants(const TrueCamera& camera,
                                                    const CameraModel& model) const {
-  const std::vector<Person> people = walkers_ ? walkers_->people() : std::vector<Person>{};
+  const std::vector<Person> people = figures();
   int count = 1;
   if (motion_blur_) {
     const double half = 0.5 * motion_blur_->exposure_s;

@@ -204,25 +204,32 @@ void evaluate_any(const Linear& f, const float* __restrict x, const float* __res
   for (int i = 0; i < count; ++i) out[i] = k.a * x[i] + k.b * y[i] + k.c * z[i];
 }
 
-/// Every unit direction.
-constexpr RayBox kAllRays{0.0F, 0.0F, 0.0F, 1.0F, 1.0F, 1.0F};
+/// The last direction that the mirror shows on the way from its axis to a pixel beyond its edge.
+Eigen::Vector3d edge_ray(const UnifiedOmni& omni, double u, double v) {
+  const Eigen::Vector2d out((u - omni.u0) / omni.px, (v - omni.v0) / omni.py);
+  const double z = min_z(omni);
+  const Eigen::Vector2d radial = std::sqrt(1.0 - z * z) * out.normalized();
+  return {radial.x(), radial.y(), z};
+}
 
 /// From nine samples. Between them a smooth direction strays from what they span by no more than
-/// half of what they differ among themselves.
+/// half of what they differ among themselves; beyond the mirror's edge the edge counts.
 RayBox box_of_rays(const UnifiedOmni& omni, int u0, int u1, int v0, int v1) {
   Eigen::Array3d low = Eigen::Array3d::Constant(2.0);
   Eigen::Array3d high = -low;
+  bool partial = false;
   for (const double u : {1.0 * u0, 0.5 * (u0 + u1), 1.0 * u1}) {
     for (const double v : {1.0 * v0, 0.5 * (v0 + v1), 1.0 * v1}) {
       const auto seen = ray(CameraModel{omni}, {u, v});
-      if (!seen) return kAllRays;  // a pixel may show nothing
-      low = low.min(seen->array());
-      high = high.max(seen->array());
+      partial = partial || !seen;
+      const Eigen::Array3d direction = seen.value_or(edge_ray(omni, u, v)).array();
+      low = low.min(direction);
+      high = high.max(direction);
     }
   }
   const Eigen::Array3f middle = (0.5 * (low + high)).cast<float>();
   const Eigen::Array3f half = ((high - low) + 1e-5).cast<float>();
-  return {middle.x(), middle.y(), middle.z(), half.x(), half.y(), half.z()};
+  return {middle.x(), middle.y(), middle.z(), half.x(), half.y(), half.z(), partial};
 }
 
 RayBox box_of_rays(const Intrinsics& intrinsics, int u0, int u1, int v0, int v1) {
@@ -356,7 +363,7 @@ void visible_in(const std::vector<SurfaceView>& views, const std::vector<ViewId>
              minimum(minus(views[front].inverse_depth, views[other].inverse_depth), box) > 0.0F;
     };
     visible.erase(std::remove_if(visible.begin(), visible.end(), hidden), visible.end());
-    pure = visible.size() == 1;
+    pure = visible.size() == 1 && !box.partial;
     return;
   }
 }

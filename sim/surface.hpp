@@ -47,12 +47,13 @@ struct RayBox {
   float hx = 0.0F;  ///< half widths
   float hy = 0.0F;
   float hz = 0.0F;
+  bool partial = false;  ///< whether some of its pixels show nothing
 };
 
 float minimum(const Linear& f, const RayBox& box);
 float maximum(const Linear& f, const RayBox& box);
 
-/// A box that holds the rays of all pixels with u in [u0, u1] and v in [v0, v1].
+/// A box that holds the rays of all pixels with u in [u0, u1] and v in [v0, v1] that show anything.
 RayBox ray_box(const CameraModel& model, int u0, int u1, int v0, int v1);
 
 /// A surface as one exposure sees it. A ray r meets it at depth 1/inverse_depth(r), within the
@@ -76,7 +77,8 @@ bool make_view(const Surface& surface, const Eigen::Isometry3d& cMw, double foca
                SurfaceView& view);
 
 /// Of @p views (by position), those that some ray of the box meets first, and perhaps a few more.
-/// The surface is alone and covers the box when @p pure comes back true.
+/// The surface is alone, covers the box and is seen by every pixel of it when @p pure comes back
+/// true.
 void visible_in(const std::vector<SurfaceView>& views, const std::vector<ViewId>& among,
                 const RayBox& box, std::vector<ViewId>& visible, bool& pure);
 

@@ -131,6 +131,16 @@ Material obstacle_material(double grey, double contrast, std::uint64_t seed) {
   return box;
 }
 
+Material carpet_material(double grey, double contrast, std::uint64_t seed) {
+  Material carpet = material(grey, 7.0 * contrast, 8.0 * contrast, seed);
+  carpet.tint = tint(0.38, 0.55);
+  return carpet;
+}
+
+Material plain_material(double grey, double fine, std::uint64_t seed) {
+  return material(grey, 0.5 * fine, fine, seed);
+}
+
 Material floor_material(double grey, double contrast, std::uint64_t seed) {
   Material floor = material(grey, 14.0 * contrast, 16.0 * contrast, seed);
   // Square tiles of 0.5 m, every other row a little lighter.

@@ -43,6 +43,9 @@ struct Material {
 
 Material wall_material(double grey, double contrast, double height_m, std::uint64_t seed);
 Material obstacle_material(double grey, double contrast, std::uint64_t seed);
+Material carpet_material(double grey, double contrast, std::uint64_t seed);
+/// Of one colour, with noise of centimetres.
+Material plain_material(double grey, double fine, std::uint64_t seed);
 Material floor_material(double grey, double contrast, std::uint64_t seed);
 Material ceiling_material(double grey, double contrast, std::uint64_t seed);
 

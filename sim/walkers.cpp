@@ -177,7 +177,8 @@ std::vector<Person> Walkers::people() const {
   for (const Walker& walker : walkers_)
     people.push_back({walker.position, walker.velocity, walker.heading, params_.radius_m,
                       params_.height_m, walker.stride_m, walker.velocity.squaredNorm() > 0.0,
-                      walker.look});
+                      walker.look,
+                      params_.kind == PeopleParams::Kind::robots ? Figure::robot : Figure::person});
   return people;
 }
 

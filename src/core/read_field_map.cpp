@@ -1,20 +1,21 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "vigia/core/angle.hpp"
 #include "vigia/core/field_map.hpp"
+#include "vigia/core/params.hpp"
 #include "vigia/core/plane_geometry.hpp"
 
 namespace vigia {
 namespace {
 
-constexpr Range kOnField{-100.0, 100.0};
+const Bounds kOnField{-100.0, 100.0};
 constexpr double kShortestLine_m = 0.05;
 constexpr double kOnLine_m = 1e-3;
 constexpr std::size_t kMostLines = 1000;
-const std::vector<std::string> kColours{"white", "yellow", "blue"};
 
 void check_on_field(const FieldMap& map, const Eigen::Vector2d& p, double beyond_m,
                     const MapReader& reader, const std::string& key) {
@@ -48,10 +49,13 @@ void add_line(FieldMap& map, const Eigen::Vector2d& from, const Eigen::Vector2d&
   map.lines.push_back(line);
 }
 
-void read_line(MapReader reader, double width_m, FieldMap& map) {
-  const std::vector<Eigen::Vector2d> points = reader.points2("points_m", kOnField, 2);
-  const bool closed = reader.boolean("closed", false);
-  reader.finish();
+void describe_line(ParamVisitor& v, FieldMap& map, double width_m) {
+  std::vector<Eigen::Vector2d> points;
+  bool closed = false;
+  v.points("points_m", points, kOnField, 2, About("its corners in order").required());
+  v.boolean("closed", closed, "whether it goes on from the last to the first");
+  if (v.reader() == nullptr) return;
+  const MapReader& reader = *v.reader();
   if (map.lines.size() + points.size() > kMostLines)
     throw reader.error("points_m",
                        "a field has at most " + std::to_string(kMostLines) + " pieces of line");
@@ -60,12 +64,17 @@ void read_line(MapReader reader, double width_m, FieldMap& map) {
   if (closed) add_line(map, points.back(), points.front(), width_m, reader);
 }
 
-void read_arc(MapReader reader, double width_m, FieldMap& map) {
-  const Eigen::Vector2d centre = reader.vector2("centre_m", kOnField);
-  const double radius = reader.number("radius_m", {0.1, 50.0});
-  const double from = from_deg(reader.number("from_deg", {-360.0, 360.0}, 0.0));
-  const double sweep = from_deg(reader.number("sweep_deg", {1.0, 360.0}, 360.0));
-  reader.finish();
+void describe_arc(ParamVisitor& v, FieldMap& map, double width_m) {
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  double radius = 1.0;
+  double from = 0.0;
+  double sweep = 2.0 * kPi;
+  v.vector("centre_m", centre, kOnField, About("of the circle").required());
+  v.number("radius_m", radius, {0.1, 50.0}, About("of its centre line").required());
+  v.angle("from_deg", from, {-360.0, 360.0}, "where it begins");
+  v.angle("sweep_deg", sweep, {1.0, 360.0}, "how far it goes, counter-clockwise");
+  if (v.reader() == nullptr) return;
+  const MapReader& reader = *v.reader();
   if (map.lines.size() >= kMostLines)
     throw reader.error("radius_m",
                        "a field has at most " + std::to_string(kMostLines) + " pieces of line");
@@ -76,46 +85,58 @@ void read_arc(MapReader reader, double width_m, FieldMap& map) {
   map.lines.push_back(line);
 }
 
-FieldGoal read_goal(MapReader reader, const FieldMap& map) {
+void describe_goal(ParamVisitor& v, FieldMap& map) {
   FieldGoal goal;
-  goal.colour = static_cast<FieldColour>(reader.choice("colour", kColours));
-  goal.from = reader.vector2("from_m", kOnField);
-  goal.to = reader.vector2("to_m", kOnField);
-  goal.depth_m = reader.number("depth_m", {0.05, 5.0}, goal.depth_m);
-  goal.height_m = reader.number("height_m", {0.1, 5.0}, goal.height_m);
-  reader.finish();
+  v.choice("colour", goal.colour, {"white", "yellow", "blue"}, About("of the goal").required());
+  v.vector("from_m", goal.from, kOnField, About("one post of its mouth").required());
+  v.vector("to_m", goal.to, kOnField, About("the other").required());
+  v.number("depth_m", goal.depth_m, {0.05, 5.0}, "from the mouth to its back");
+  v.number("height_m", goal.height_m, {0.1, 5.0}, "of the goal");
+  if (v.reader() == nullptr) return;
+  const MapReader& reader = *v.reader();
   if ((goal.to - goal.from).norm() < 0.2)
     throw reader.error("to_m", "the goal's mouth must be at least 0.2 m wide");
   check_on_field(map, goal.from, 0.0, reader, "from_m");
   check_on_field(map, goal.to, 0.0, reader, "to_m");
-  return goal;
+  map.goals.push_back(goal);
 }
 
-CornerPost read_post(MapReader reader, const FieldMap& map) {
+void describe_post(ParamVisitor& v, FieldMap& map) {
   CornerPost post;
-  post.at = reader.vector2("at_m", kOnField);
-  post.outer = static_cast<FieldColour>(1 + reader.choice("outer", {"yellow", "blue"}));
-  post.radius_m = reader.number("radius_m", {0.01, 1.0}, post.radius_m);
-  post.height_m = reader.number("height_m", {0.1, 5.0}, post.height_m);
-  reader.finish();
-  check_on_field(map, post.at, 0.0, reader, "at_m");
-  return post;
+  enum class Outer { yellow, blue };
+  auto outer = Outer::yellow;
+  v.vector("at_m", post.at, kOnField, About("its middle").required());
+  v.choice(
+      "outer", outer, {"yellow", "blue"},
+      About("the colour of its upper and lower bands; the middle one has the other").required());
+  v.number("radius_m", post.radius_m, {0.01, 1.0}, "of the post");
+  v.number("height_m", post.height_m, {0.1, 5.0}, "of the post");
+  post.outer = outer == Outer::yellow ? FieldColour::yellow : FieldColour::blue;
+  if (v.reader() == nullptr) return;
+  check_on_field(map, post.at, 0.0, *v.reader(), "at_m");
+  map.posts.push_back(post);
 }
 
 }  // namespace
 
+void describe(ParamVisitor& v, FieldMap& map) {
+  v.number("length_m", map.length_m, {2.0, 60.0}, About("between the goal lines").required());
+  v.number("width_m", map.width_m, {2.0, 60.0}, About("between the touch lines").required());
+  v.number("margin_m", map.margin_m, {0.0, 10.0}, "of carpet round about");
+  double width = 0.125;
+  v.number("line_width_m", width, {0.01, 0.5}, "of every line and arc");
+  v.each("lines", "straight lines, painted about these points",
+         [&] { describe_line(v, map, width); });
+  v.each("arcs", "arcs of circles", [&] { describe_arc(v, map, width); });
+  v.each("goals", "what stands on the goal lines", [&] { describe_goal(v, map); });
+  v.each("posts", "corner posts, banded in yellow and blue", [&] { describe_post(v, map); });
+  v.require(v.reader() == nullptr || !map.lines.empty(), "lines",
+            "a field needs at least one line or arc");
+}
+
 FieldMap read_field_map(MapReader reader) {
   FieldMap map;
-  map.length_m = reader.number("length_m", {2.0, 60.0});
-  map.width_m = reader.number("width_m", {2.0, 60.0});
-  map.margin_m = reader.number("margin_m", {0.0, 10.0}, map.margin_m);
-  const double width = reader.number("line_width_m", {0.01, 0.5}, 0.125);
-  for (const MapReader& line : reader.maps("lines")) read_line(line, width, map);
-  for (const MapReader& arc : reader.maps("arcs")) read_arc(arc, width, map);
-  for (const MapReader& goal : reader.maps("goals")) map.goals.push_back(read_goal(goal, map));
-  for (const MapReader& post : reader.maps("posts")) map.posts.push_back(read_post(post, map));
-  reader.finish();
-  if (map.lines.empty()) throw reader.error("lines", "a field needs at least one line or arc");
+  read_params(std::move(reader), map);
   return map;
 }
 

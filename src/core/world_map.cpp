@@ -70,6 +70,20 @@ void describe_obstacle(ParamVisitor& v, const Room& room, std::vector<Obstacle>&
   obstacles.push_back(obstacle);
 }
 
+/// The field's centre is the world's origin; all of it lies in the room.
+void describe_field(ParamVisitor& v, WorldMap& world) {
+  FieldMap& field = world.field.emplace();
+  v.map("field", field, "lines, goals and posts on a carpet about the world's origin");
+  if (v.reader() == nullptr) return;
+  const Eigen::Vector2d reach(0.5 * field.length_m + field.margin_m,
+                              0.5 * field.width_m + field.margin_m);
+  const std::vector<Eigen::Vector2d> carpet{
+      {-reach.x(), -reach.y()}, {reach.x(), -reach.y()}, reach, {-reach.x(), reach.y()}};
+  for (std::size_t i = 0; i < carpet.size(); ++i)
+    check_segment_in_room(carpet[i], carpet[(i + 1) % carpet.size()], world.plan.outline(),
+                          *v.reader(), "field");
+}
+
 }  // namespace
 
 void describe(ParamVisitor& v, WorldMap& world) {
@@ -95,6 +109,7 @@ void describe(ParamVisitor& v, WorldMap& world) {
   landmarks.reserve(placed.size());
   for (const PlacedLandmark& entry : placed) landmarks.push_back(entry.landmark);
   world.landmarks = LandmarkMap(std::move(landmarks));
+  v.given("field", [&] { describe_field(v, world); });
 }
 
 WorldMap read_world_map(MapReader& reader) {

@@ -180,7 +180,7 @@ TEST(Simulator, TheOpticalCentreMayBeBesideItsPlaceAndMovesNoOtherError) {
   const CameraErrors with(beside, 9);
   EXPECT_TRUE(without.mounting({0, 0, 1})->isApprox(*with.mounting({0, 0, 1}), 0.0));
   const auto offset = [&](const CameraErrors& errors) {
-    return std::get<HeadGeometry>(errors.true_mount(setup.robot.head)).camera_offset_h;
+    return std::get<HeadGeometry>(errors.true_mount(setup.cameras.front().camera)).camera_offset_h;
   };
   EXPECT_EQ(offset(without).norm(), 0.0);
   EXPECT_GT(offset(with).norm(), 0.001);

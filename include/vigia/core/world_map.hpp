@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "vigia/core/config.hpp"
+#include "vigia/core/field_map.hpp"
 #include "vigia/core/floor_plan.hpp"
 #include "vigia/core/ground.hpp"
 #include "vigia/core/landmark.hpp"
@@ -11,16 +13,18 @@ namespace vigia {
 
 class ParamVisitor;
 
-/// What the robot knows of the building: plan, ground and landmarks.
+/// What the robot knows of the building: plan, ground, landmarks, and the field on its floor.
 struct WorldMap {
   std::string name = "world";
   FloorPlan plan;
   Ground ground;
   LandmarkMap landmarks;
+  std::optional<FieldMap> field = std::nullopt;
 };
 
-/// The keys `name`, `room`, `walls`, `obstacles`, `landmarks` of a world file. A reader throws
-/// InputError: a landmark inside a wall or outside the room, off every face, overlapping ids, …
+/// The keys `name`, `room`, `walls`, `obstacles`, `landmarks`, `field` of a world file. A reader
+/// throws InputError: a landmark inside a wall or outside the room, off every face, overlapping
+/// ids, …
 void describe(ParamVisitor& v, WorldMap& world);
 
 /// Reads them; the reader stays the caller's to finish.

@@ -52,6 +52,10 @@ struct Appearance {
   double plate_factor = 1.6;  ///< half the sheet's width over the disc's radius
   PlateShape plate_shape = PlateShape::square;
   double clutter_per_m2 = 0.25;  ///< marks scattered over walls and floor
+  double carpet_grey = 88.0;     ///< of a field's carpet
+  double line_grey = 232.0;      ///< of its lines
+  int adverts = 0;               ///< boards in bright colours that stand round it
+  int spectators = 0;            ///< people in bright clothes who do
   std::vector<Stripe> stripes;
   std::vector<Clutter> clutter;  ///< named in the file and drawn at random
 };

@@ -6,6 +6,14 @@
 
 namespace vigia::sim {
 
+/// What somebody looks like.
+enum class Figure {
+  person,
+  coloured_person,  ///< in bright clothes
+  robot,            ///< a dark one with a marker in its team's colour, cyan or magenta
+  chassis,          ///< what a robot's own cameras see of it
+};
+
 /// Somebody who stands or walks upright on the floor.
 struct Person {
   Eigen::Vector2d position = Eigen::Vector2d::Zero();
@@ -15,7 +23,8 @@ struct Person {
   double height_m = 1.75;
   double walked_m = 0.0;  ///< so far: where in the stride he is
   bool walking = false;
-  int look = 0;  ///< which clothes
+  int look = 0;  ///< which clothes, which team
+  Figure figure = Figure::person;
 };
 
 }  // namespace vigia::sim

@@ -24,17 +24,21 @@ class CameraErrors {
   /// The true model of optics that do not zoom: focal length and principal point are off.
   CameraModel true_model(const CameraModel& calibrated) const;
 
-  /// How a camera is truly mounted, but for mounting() of a head that carries it.
-  CameraMount true_mount(const CameraMount& known) const;
+  /// How a camera is truly mounted, but for mounting() of a head that carries it. A mirror tilts
+  /// about its optical centre.
+  CameraMount true_mount(const Camera& known) const;
 
   /// rMr': the base frame as the head truly sits on it. The head turns by yaw, pitch and roll about
   /// the crossing of its axes @p mount_r. Nothing when the head is mounted right.
   std::optional<Eigen::Isometry3d> mounting(const Eigen::Vector3d& mount_r) const;
 
  private:
-  Eigen::Vector3d focal_ = Eigen::Vector3d::Zero();  ///< of 1, cos πu, cos 2πu; relative
-  Eigen::Vector2d drift_ = Eigen::Vector2d::Zero();  ///< px from end to end
-  Eigen::Vector2d bow_ = Eigen::Vector2d::Zero();    ///< px of sin 2πu
+  Eigen::Vector3d focal_ = Eigen::Vector3d::Zero();          ///< of 1, cos πu, cos 2πu; relative
+  Eigen::Vector2d drift_ = Eigen::Vector2d::Zero();          ///< px from end to end
+  Eigen::Vector2d bow_ = Eigen::Vector2d::Zero();            ///< px of sin 2πu
+  double mirror_scale_ = 0.0;                                ///< relative
+  Eigen::Vector2d mirror_centre_ = Eigen::Vector2d::Zero();  ///< px
+  Eigen::Vector2d mirror_tilt_ = Eigen::Vector2d::Zero();    ///< rad about x and y of frame c
   bool askew_ = false;
   Eigen::Vector3d turn_ = Eigen::Vector3d::Zero();    ///< yaw, pitch, roll
   Eigen::Vector3d offset_ = Eigen::Vector3d::Zero();  ///< m

@@ -49,6 +49,13 @@ struct PrincipalPointParams {
   double drift_px = 2.5;  ///< from one end of the zoom to the other; right in the middle
 };
 
+/// An omnidirectional camera is not quite what it was calibrated as.
+struct MirrorParams {
+  double scale = 0.002;          ///< σ of the relative error of its focal length
+  double tilt = from_deg(0.05);  ///< σ of the tilt about either axis of the image, rad
+  double centre_px = 0.2;        ///< σ of either coordinate of its middle
+};
+
 /// Pan and tilt encoders follow the axes with play.
 struct BacklashParams {
   double width = from_deg(0.1);  ///< rad
@@ -78,8 +85,10 @@ struct MissingLandmarksParams {
   int at_most_one_in = 6;    ///< landmarks; a map of fewer lacks none
 };
 
-/// People who walk about.
+/// People, or other robots, who move about.
 struct PeopleParams {
+  enum class Kind { people, robots };
+  Kind kind = Kind::people;
   int count = 3;
   double radius_m = 0.25;
   double height_m = 1.75;
@@ -110,6 +119,7 @@ struct DisturbanceParams {
   std::optional<MountingParams> mounting;
   std::optional<ZoomCalibrationParams> zoom_calibration;
   std::optional<PrincipalPointParams> principal_point;
+  std::optional<MirrorParams> mirror;
   std::optional<BacklashParams> backlash;
   std::optional<WheelSlipParams> wheel_slip;
   std::optional<MapErrorParams> map_error;

@@ -19,6 +19,7 @@ namespace vigia::sim {
 /// Everything about a simulated robot that is fixed.
 struct RobotParams {
   double radius_m = 0.3;
+  double body_height_m = 0.0;  ///< of what its own cameras see of it; 0: nothing
   BaseLimits base;
   HeadGeometry head;
   HeadLimits head_limits;

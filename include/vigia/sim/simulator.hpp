@@ -94,6 +94,8 @@ class Simulator {
   void disturb(const DisturbanceParams& disturbances, std::uint64_t seed);
   Bystander bystander() const;
   const TrueCamera& camera_of(CameraId id) const;
+  /// People, other robots, and what the robot sees of itself.
+  std::vector<Person> figures() const;
   std::vector<Exposure::Instant> instants(const TrueCamera& camera, const CameraModel& model) const;
 
   RobotSetup setup_;
