@@ -49,7 +49,7 @@ RayDerivative ray_derivative(const UnifiedOmni& omni, const Eigen::Vector2f& /*u
   const float behind = ray.z() + xi;
   const float along = behind * behind / ((1.0F + xi * ray.z()) * focal);
   const float across = behind / focal;
-  RayDerivative derivative;
+  RayDerivative derivative = RayDerivative::Zero();
   derivative << along * ray.z() * c, -across * d,  //
       along * ray.z() * d, across * c,             //
       -along * s, 0.0F;
@@ -108,7 +108,7 @@ struct FieldPaintView::Pixel {
   Eigen::Vector2f p;  ///< of the floor
   float w = 0.0F;     ///< inverse depth
   float reach_m = 0.0F;
-  RayDerivative derivative;
+  RayDerivative derivative = RayDerivative::Zero();
 
   /// Distance in σ of the pixel's Gaussian to the plane n·ray = 0, positive where n·ray is.
   float distance(const Eigen::Vector3f& n, float sigma_px) const {
