@@ -27,7 +27,9 @@ constexpr double kProposalWidening = 1.5;  // of a suggestion's covariance
 constexpr double kMinInformedWeight = 0.01;
 constexpr double kWideCluster_m = 0.3;
 constexpr double kAgreeingSigmas = 4.0;
-constexpr double kDepleted = 15.0;   // effective particles
+constexpr double kDepleted = 15.0;       // effective particles
+constexpr double kForgottenTwin = 1e-6;  // weight
+constexpr double kTurnedShare = 0.6;     // of a cluster's weight that is half a turn away
 constexpr double kUsualFall = 15.0;  // of the log-likelihood below its long-term mean, by chance
 
 double log_gaussian(const Eigen::Vector3d& off, const Eigen::Matrix3d& covariance) {
@@ -197,9 +199,22 @@ double effective_number(const std::vector<Particle>& particles) {
   return 1.0 / squares;
 }
 
-bool nearer_as_twin(const Pose2& pose, const Pose2& mean) {
-  return (FieldModel::half_turned(pose).position() - mean.position()).norm() <
-         (pose.position() - mean.position()).norm();
+void half_turn(Particle& particle) {
+  particle.pose = FieldModel::half_turned(particle.pose);
+  particle.twin = 1.0 - particle.twin;
+}
+
+/// The suggestions, of two that are half a turn apart the better.
+std::vector<FieldMatcher::Suggestion> without_twins(
+    const std::vector<FieldMatcher::Suggestion>& suggestions) {
+  std::vector<FieldMatcher::Suggestion> kept;
+  for (const auto& suggestion : suggestions) {
+    const Pose2 twin = FieldModel::half_turned(suggestion.fix.pose);
+    const bool known = std::any_of(
+        kept.begin(), kept.end(), [&](const auto& other) { return belongs(other.fix.pose, twin); });
+    if (!known) kept.push_back(suggestion);
+  }
+  return kept;
 }
 
 /// A pose that an image suggests by itself.
@@ -279,10 +294,12 @@ Mcl::Mcl(const FieldModel& model, const MclParams& params, std::uint64_t seed)
 
 void Mcl::sample_uniform(int count) {
   const FieldMap& map = model_->map();
+  const bool twins = params_.method == MclParams::Method::best && model_->lines_symmetric();
+  const double twin = twins ? 0.5 : 0.0;
   for (int i = 0; i < count; ++i) {
     const double x = random_.uniform(-0.5 * map.length_m, 0.5 * map.length_m);
     const double y = random_.uniform(-0.5 * map.width_m, 0.5 * map.width_m);
-    particles_.push_back({{x, y, random_.uniform(-kPi, kPi)}, 1.0 / count});
+    particles_.push_back({{x, y, random_.uniform(-kPi, kPi)}, 1.0 / count, twin});
   }
 }
 
@@ -292,7 +309,6 @@ void Mcl::reset(Stamp stamp, const std::optional<Prior>& prior) {
   slow_.reset();
   since_check_ = params_.check_every;
   given_prior_ = prior.has_value();
-  twin_weight_ = 0.0;
   motion_noise_.setZero();
   const int count = params_.method == MclParams::Method::as_described ? params_.min_particles
                                                                       : params_.max_particles;
@@ -303,7 +319,6 @@ void Mcl::reset(Stamp stamp, const std::optional<Prior>& prior) {
   } else {
     sample_uniform(count);
   }
-  if (model_->symmetric() && !prior) twin_weight_ = 0.5;
   belief_ = Belief{};
   belief_.stamp = stamp;
   refresh_belief();
@@ -336,11 +351,23 @@ Mcl::Spread Mcl::spread_of_all() const {
           squares - sum * sum.transpose() + noise + 1e-8 * Eigen::Matrix3d::Identity()};
 }
 
-double Mcl::log_weight(const FieldScan& scan, const Pose2& pose) const {
+double Mcl::log_weight_of_sightings(const FieldScan& scan, Particle& particle) const {
+  const double here = model_->log_likelihood_of_sightings(scan, particle.pose);
+  if (particle.twin == 0.0) return here;
+  const double there =
+      model_->log_likelihood_of_sightings(scan, FieldModel::half_turned(particle.pose));
+  const double higher = std::max(here, there);
+  const double own = (1.0 - particle.twin) * std::exp(here - higher);
+  const double twin = particle.twin * std::exp(there - higher);
+  particle.twin = twin / (own + twin);
+  return higher + std::log(own + twin);
+}
+
+double Mcl::log_weight(const FieldScan& scan, Particle& particle) const {
   if (params_.method == MclParams::Method::as_described)
-    return log_agreement(model_->map(), scan, pose);
-  return model_->log_likelihood(scan.points, pose, clutter_) +
-         model_->log_likelihood_of_sightings(scan, pose);
+    return log_agreement(model_->map(), scan, particle.pose);
+  return model_->log_likelihood(scan.points, particle.pose, clutter_) +
+         log_weight_of_sightings(scan, particle);
 }
 
 std::vector<double> Mcl::draw_motion_noise(const FieldScan& scan) {
@@ -369,42 +396,40 @@ std::vector<double> Mcl::draw_motion_noise(const FieldScan& scan) {
   return log_weights;
 }
 
+void Mcl::inject_about(const FieldFix& fix, int count, double log_prior, const FieldScan& scan) {
+  const double twin = model_->lines_symmetric() ? 0.5 : 0.0;
+  const Eigen::Matrix3d wide = kWidening * kWidening * fix.covariance;
+  const Eigen::Matrix3d root = wide.llt().matrixL();
+  for (int i = 0; i < count; ++i) {
+    const Pose2 pose = sample_about(fix.pose, root, random_);
+    const double log_proposal = log_gaussian(difference(pose, fix.pose), wide);
+    particles_.push_back({pose, std::exp(std::min(600.0, log_prior - log_proposal)) / count, twin});
+    log_likelihoods_.push_back(log_weight(scan, particles_.back()));
+  }
+}
+
 /// Samples of what the image suggests, weighed as samples of the mixture prior.
-void Mcl::inject(const FieldScan& scan, const Pose2& before) {
-  const auto suggestions = matcher_.match(scan);
+void Mcl::inject(const FieldScan& scan) {
+  std::vector<FieldMatcher::Suggestion> suggestions = matcher_.match(scan);
   if (suggestions.empty()) return;
   const FieldMap& map = model_->map();
   const bool nothing_known = !fast_ && !given_prior_;
   const double p = nothing_known ? 0.5 : params_.kidnapped;
-  const double log_uniform = std::log(p / (map.length_m * map.width_m * 2.0 * kPi));
-  const std::size_t own = particles_.size();
-  std::vector<double> shares;
+  double log_uniform = std::log(p / (map.length_m * map.width_m * 2.0 * kPi));
+  if (model_->lines_symmetric()) {
+    // A particle stands for two poses.
+    log_uniform += std::log(2.0);
+    suggestions = without_twins(suggestions);
+  }
+  for (Particle& particle : particles_) particle.weight *= 1.0 - p;
+  // What is unlikely here may be all that agrees with the particles.
+  constexpr double kOddShare = 0.1;
   double total = 0.0;
-  for (const auto& s : suggestions) {
-    // Of twins that nothing tells apart, the one on the particles' side.
-    if (model_->symmetric() && nearer_as_twin(s.fix.pose, before)) {
-      shares.push_back(0.0);
-      continue;
-    }
-    // What is unlikely here may be all that agrees with the particles.
-    const double share = 0.1 + s.weight;
-    shares.push_back(share);
-    total += share;
-  }
-  for (std::size_t k = 0; k < suggestions.size(); ++k) {
-    if (shares[k] <= 0.0) continue;
-    const FieldFix& fix = suggestions[k].fix;
-    const int count = std::max(10, static_cast<int>(params_.injected * shares[k] / total));
-    const Eigen::Matrix3d wide = kWidening * kWidening * fix.covariance;
-    const Eigen::Matrix3d root = wide.llt().matrixL();
-    for (int i = 0; i < count; ++i) {
-      const Pose2 pose = sample_about(fix.pose, root, random_);
-      const double log_proposal = log_gaussian(difference(pose, fix.pose), wide);
-      particles_.push_back({pose, std::exp(std::min(600.0, log_uniform - log_proposal)) / count});
-      log_likelihoods_.push_back(log_weight(scan, pose));
-    }
-  }
-  for (std::size_t i = 0; i < own; ++i) particles_[i].weight *= 1.0 - p;
+  for (const auto& s : suggestions) total += kOddShare + s.weight;
+  for (const auto& s : suggestions)
+    inject_about(s.fix,
+                 std::max(10, static_cast<int>(params_.injected * (kOddShare + s.weight) / total)),
+                 log_uniform, scan);
 }
 
 void Mcl::resample() {
@@ -424,7 +449,7 @@ void Mcl::resample() {
   std::size_t i = 0;
   for (int n = 0; n < count; ++n, at += step) {
     while (sum < at && i + 1 < particles_.size()) sum += particles_[++i].weight;
-    chosen.push_back({particles_[i].pose, step});
+    chosen.push_back({particles_[i].pose, step, particles_[i].twin});
   }
   particles_ = std::move(chosen);
   if (!fixed) spread_copies();
@@ -483,22 +508,19 @@ void Mcl::watch_likelihood(const FieldScan& scan) {
 void Mcl::update(const FieldScan& scan) {
   if (scan.points.empty() && scan.goals.empty() && scan.posts.empty()) return;
   belief_.stamp = scan.stamp;
-  const Pose2 before = spread_of_all().mean;
   log_likelihoods_ = draw_motion_noise(scan);
   for (std::size_t i = 0; i < particles_.size(); ++i)
-    log_likelihoods_[i] += log_weight(scan, particles_[i].pose);
+    log_likelihoods_[i] += log_weight(scan, particles_[i]);
   const std::size_t own = particles_.size();
   const bool best = params_.method == MclParams::Method::best;
   const bool fallen = fast_ && slow_ && *fast_ < *slow_ - kUsualFall;
   if (best && (++since_check_ >= params_.check_every || (fallen && since_check_ >= 2))) {
     since_check_ = 0;
-    inject(scan, before);
+    inject(scan);
   }
   if (best) correct_between_clusters(scan);
   weigh_by(log_likelihoods_, particles_);
-  double injected = 0.0;
-  for (std::size_t i = own; i < particles_.size(); ++i) injected += particles_[i].weight;
-  if (model_->symmetric()) twin_weight_ += injected * (0.5 - twin_weight_);
+  if (best && model_->lines_symmetric()) fold_twins();
   const double effective = effective_number(particles_);
   const bool resampled =
       particles_.size() > own || effective < params_.resample_share * static_cast<double>(own);
@@ -518,18 +540,59 @@ void Mcl::widen_depleted(const FieldScan& scan) {
   for (Particle& particle : particles_) particle.pose = sample_about(particle.pose, root, random_);
 }
 
-void Mcl::refresh_belief() {
-  std::vector<PoseHypothesis> clusters = by_weight(clusters_of(particles_, kMostHypotheses).all);
-  if (model_->symmetric() && twin_weight_ > 1e-6) {
-    PoseHypothesis twin = clusters.front();
-    twin.pose = FieldModel::half_turned(twin.pose);
-    twin.covariance.topRightCorner<2, 1>() *= -1.0;
-    twin.covariance.bottomLeftCorner<1, 2>() *= -1.0;
-    twin.weight *= twin_weight_;
-    for (PoseHypothesis& cluster : clusters) cluster.weight *= 1.0 - twin_weight_;
-    clusters.push_back(twin);
-    clusters = by_weight(std::move(clusters));
+/// Turns particles whose half-turned pose lies in a heavier cluster into it, and clusters that are
+/// most likely half a turn away.
+void Mcl::fold_twins() {
+  std::vector<bool> taken(particles_.size(), false);
+  for (std::size_t n = 0; n < kMostHypotheses; ++n) {
+    std::optional<std::size_t> heaviest;
+    for (std::size_t i = 0; i < particles_.size(); ++i)
+      if (!taken[i] && (!heaviest || particles_[i].weight > particles_[*heaviest].weight))
+        heaviest = i;
+    if (!heaviest) return;
+    const Pose2 centre = particles_[*heaviest].pose;
+    std::vector<std::size_t> cluster;
+    double weight = 0.0;
+    double twin = 0.0;
+    for (std::size_t i = 0; i < particles_.size(); ++i) {
+      if (taken[i]) continue;
+      Particle& particle = particles_[i];
+      const bool here = belongs(centre, particle.pose);
+      if (!here && !belongs(centre, FieldModel::half_turned(particle.pose))) continue;
+      if (!here) half_turn(particle);
+      taken[i] = true;
+      cluster.push_back(i);
+      weight += particle.weight;
+      twin += particle.weight * particle.twin;
+    }
+    if (twin > kTurnedShare * weight)
+      for (const std::size_t i : cluster) half_turn(particles_[i]);
   }
+}
+
+/// Clusters of particles and their twins, the heaviest first.
+std::vector<PoseHypothesis> Mcl::hypotheses() const {
+  const Clusters clusters = clusters_of(particles_, kMostHypotheses);
+  std::vector<PoseHypothesis> all = clusters.all;
+  std::vector<PoseHypothesis> twins = clusters.all;
+  for (PoseHypothesis& twin : twins) {
+    twin.pose = FieldModel::half_turned(twin.pose);
+    twin.covariance = turned(twin.covariance, kPi);
+    twin.weight = 0.0;
+  }
+  for (std::size_t i = 0; i < particles_.size(); ++i) {
+    if (clusters.of[i] == kNoCluster) continue;
+    const double twin = particles_[i].weight * particles_[i].twin;
+    all[clusters.of[i]].weight -= twin;
+    twins[clusters.of[i]].weight += twin;
+  }
+  for (const PoseHypothesis& twin : twins)
+    if (twin.weight > kForgottenTwin) all.push_back(twin);
+  return by_weight(std::move(all));
+}
+
+void Mcl::refresh_belief() {
+  std::vector<PoseHypothesis> clusters = hypotheses();
   for (PoseHypothesis& cluster : clusters)
     cluster.covariance += turned(motion_noise_, cluster.pose.theta);
   belief_.pose = clusters.front().pose;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -8,6 +9,7 @@
 #include "vigia/evaluation/field_study.hpp"
 #include "vigia/localization/field_grid.hpp"
 #include "vigia/localization/field_match.hpp"
+#include "vigia/localization/mcl.hpp"
 #include "vigia/localization/murea.hpp"
 
 namespace vigia::evaluation {
@@ -117,6 +119,59 @@ TEST(FieldDrive, OnASymmetricFieldWithoutPriorNoBeliefIsEverConfident) {
     for (const auto& [localizer, samples] : drive)
       for (const FieldDriveSample& sample : samples)
         EXPECT_TRUE(sample.flagged()) << static_cast<int>(localizer) << " seed " << seed;
+  }
+}
+
+TEST(FieldDrive, WhereGoalsAloneTellTheHalvesApartAndNoneIsSeenNoBeliefIsEverConfident) {
+  FieldDriveParams params;
+  params.prior = false;
+  params.count = 100;
+  params.frames.goals = false;
+  const std::vector<FieldLocalizer> all{FieldLocalizer::field_grid, FieldLocalizer::mcl};
+  const auto drives = drive_field_seeds(field("12x8"), params, all, 571, 2, 1);
+  for (const FieldLocalizer localizer : all) {
+    int flagged_without_truth = 0;
+    for (const FieldDrive& drive : drives)
+      for (const FieldDriveSample& sample : drive.at(localizer)) {
+        EXPECT_TRUE(sample.flagged()) << static_cast<int>(localizer);
+        const auto& hypotheses = sample.belief.hypotheses;
+        if (std::none_of(hypotheses.begin(), hypotheses.end(), [&](const PoseHypothesis& one) {
+              return (one.pose.position() - sample.truth.position()).norm() < 0.5;
+            }))
+          ++flagged_without_truth;
+      }
+    EXPECT_LE(flagged_without_truth, 4) << static_cast<int>(localizer);  // of 200
+  }
+}
+
+/// Beliefs about a robot that stands still and sees no goal in the first frames.
+std::vector<Belief> beliefs_with_goals_late(localization::Mcl& mcl, const FieldMap& map,
+                                            const Pose2& truth, int without, int with) {
+  RandomStream random(3, "late goals");
+  std::vector<Belief> beliefs;
+  mcl.reset(Stamp{}, std::nullopt);
+  for (int k = 0; k < without + with; ++k) {
+    FieldFrameParams params;
+    params.goals = k >= without;
+    mcl.update(draw_field_frame(map, params, truth, random).scan);
+    beliefs.push_back(mcl.belief());
+  }
+  return beliefs;
+}
+
+TEST(FieldTwins, AreToldApartByTheFirstGoalInSight) {
+  const FieldMap map = field("12x8");
+  const localization::FieldModel model(map);
+  const Pose2 truth{2.0, -1.0, 0.7};
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    localization::Mcl mcl(model, {}, seed);
+    const std::vector<Belief> beliefs = beliefs_with_goals_late(mcl, map, truth, 20, 3);
+    EXPECT_EQ(beliefs[19].status, BeliefStatus::ambiguous) << seed;
+    ASSERT_GE(beliefs[19].hypotheses.size(), 2U) << seed;
+    EXPECT_NEAR(beliefs[19].hypotheses[0].weight, 0.5, 0.02) << seed;
+    EXPECT_NEAR(beliefs[19].hypotheses[1].weight, 0.5, 0.02) << seed;
+    EXPECT_EQ(beliefs.back().status, BeliefStatus::tracking) << seed;
+    EXPECT_LT(difference(beliefs.back().pose, truth).head<2>().norm(), 0.1) << seed;
   }
 }
 

@@ -48,6 +48,7 @@ struct MclParams {
 struct Particle {
   Pose2 pose;
   double weight = 0.0;
+  double twin = 0.0;  ///< probability that the robot is half a turn from the pose instead
 };
 
 /// Monte Carlo localization (Dellaert, Fox, Burgard, Thrun 1999; Minho §II.A): move the particles
@@ -57,8 +58,8 @@ struct Particle {
 /// particles', a little uniform – weighed by the same likelihood, clusters far apart by
 /// FieldModel::line_evidence().
 ///
-/// On a field that half a turn leaves as it is, likelihoods never tell a pose from its twin: the
-/// particles follow one of the two and the twin's weight is kept beside them.
+/// Where half a turn changes no line, points never tell a pose from its twin: a particle stands for
+/// both, with the probability of each beside it (Rao–Blackwellised), which goals and posts move.
 class Mcl {
  public:
   Mcl(const FieldModel& model, const MclParams& params, std::uint64_t seed);
@@ -77,14 +78,19 @@ class Mcl {
   };
   void sample_uniform(int count);
   Spread spread_of_all() const;
-  double log_weight(const FieldScan& scan, const Pose2& pose) const;
+  /// Log-likelihood of the scan; moves the particle's odds of being half a turn away.
+  double log_weight(const FieldScan& scan, Particle& particle) const;
+  double log_weight_of_sightings(const FieldScan& scan, Particle& particle) const;
   /// Log weights of the noise's densities over the proposals'.
   std::vector<double> draw_motion_noise(const FieldScan& scan);
-  void inject(const FieldScan& scan, const Pose2& before);
+  void inject(const FieldScan& scan);
+  void inject_about(const FieldFix& fix, int count, double log_prior, const FieldScan& scan);
+  void fold_twins();
   void correct_between_clusters(const FieldScan& scan);
   void resample();
   void spread_copies();
   void widen_depleted(const FieldScan& scan);
+  std::vector<PoseHypothesis> hypotheses() const;
   void refresh_belief();
   void watch_likelihood(const FieldScan& scan);
 
@@ -101,7 +107,6 @@ class Mcl {
   std::optional<double> fast_;
   std::optional<double> slow_;
   int since_check_ = 0;
-  double twin_weight_ = 0.0;
   Belief belief_;
 };
 
