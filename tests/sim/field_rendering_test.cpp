@@ -130,9 +130,12 @@ TEST(FieldRendering, WindowsAndRunsAreCropsOfTheFullFrame) {
   frame()->read_colour_runs(runs, read.data());
   const vpRGBa* next = read.data();
   for (const imaging::Run& run : runs)
-    for (int u = run.u_begin; u < run.u_end; ++u, ++next)
-      ASSERT_TRUE(*next == whole[static_cast<unsigned>(run.v)][static_cast<unsigned>(u)])
-          << u << ", " << run.v;
+    for (int u = run.u_begin; u < run.u_end; ++u, ++next) {
+      const vpRGBa& pixel = whole[static_cast<unsigned>(run.v)][static_cast<unsigned>(u)];
+      ASSERT_EQ(next->R, pixel.R) << u << ", " << run.v;
+      ASSERT_EQ(next->G, pixel.G) << u << ", " << run.v;
+      ASSERT_EQ(next->B, pixel.B) << u << ", " << run.v;
+    }
 }
 
 TEST(FieldRendering, GoalsAndPostsHaveTheirColoursWhereTheyStand) {
