@@ -295,6 +295,30 @@ INSTANTIATE_TEST_SUITE_P(
              "centre_m: [0, 1, 1.5], kind: pattern, floor: 1, room: 2, pattern: 3",
              "94: landmarks[1].pattern: landmark 1 shows the same code")));
 
+TEST(WorldMap, HoldsAFieldThatLiesInTheRoom) {
+  const auto read = [](const std::string& room) {
+    MapReader reader(parse_config("version: 1\nroom: {outline_m: " + room +
+                                      ", height_m: 4}\nfield: {length_m: 6, width_m: 4, lines: "
+                                      "[{points_m: [[-3, 0], [3, 0]]}]}\n",
+                                  "w.yaml"),
+                     "world");
+    WorldMap world = read_world_map(reader);
+    reader.finish();
+    return world;
+  };
+  const WorldMap world = read("[[-5, -4], [5, -4], [5, 4], [-5, 4]]");
+  ASSERT_TRUE(world.field);
+  EXPECT_EQ(world.field->lines.size(), 1U);
+  try {
+    read("[[-3.5, -4], [5, -4], [5, 4], [-3.5, 4]]");
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("field: it reaches outside the room"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 /// Whether the camera of a robot at @p eye sees a landmark well enough for Armingol's Table 1.
 bool sees(const WorldMap& world, const Landmark& landmark, const Eigen::Vector3d& eye) {
   const Eigen::Vector3d gaze = eye - landmark.centre_w();
