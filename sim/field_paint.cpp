@@ -1,6 +1,7 @@
 #include "field_paint.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -13,6 +14,8 @@ namespace vigia::sim {
 namespace {
 
 constexpr double kMeets_m = 1e-3;
+constexpr std::size_t kMostStrips = 8;  // lines in one pixel
+constexpr float kLeastShare = 1e-4F;
 constexpr float kTails = 4.0F;                 // σ beyond which a side is not felt
 constexpr double kPixelVariance = 1.0 / 12.0;  // of a pixel's square in any direction
 
@@ -21,10 +24,37 @@ float share_inside_side(float d) {
   return 0.5F + 0.5F * std::erf(d * 0.70710678F);
 }
 
-/// Share between two sides that face each other.
-float share_between(float d, float opposite) {
-  const float share = share_inside_side(d) + share_inside_side(opposite) - 1.0F;
-  return share > 0.0F ? share : 0.0F;
+/// What lies between two parallel sides, in σ along the normal from the pixel.
+struct Band {
+  Eigen::Vector2f normal = Eigen::Vector2f::UnitX();
+  float from = -kTails;
+  float to = kTails;
+};
+
+/// Share of a Gaussian inside two bands: a rectangle of the normal distribution of two variables
+/// that are correlated as the bands' normals are, by Gauss's rule in two halves over the narrower.
+float share_of_both(const Band& a, const Band& b) {
+  constexpr std::array<float, 5> kNodes{-0.9061798F, -0.5384693F, 0.0F, 0.5384693F, 0.9061798F};
+  constexpr std::array<float, 5> kWeights{0.2369269F, 0.4786287F, 0.5688889F, 0.4786287F,
+                                          0.2369269F};
+  const bool a_narrower = a.to - a.from < b.to - b.from;
+  const Band& inner = a_narrower ? a : b;
+  const Band& outer = a_narrower ? b : a;
+  const float rho = inner.normal.dot(outer.normal);
+  const float scale = 1.0F / std::sqrt(std::max(1.0F - rho * rho, 1e-4F));
+  const float low = std::max(inner.from, -kTails);
+  const float quarter = 0.25F * (std::min(inner.to, kTails) - low);
+  if (quarter <= 0.0F) return 0.0F;
+  float sum = 0.0F;
+  for (const float middle : {low + quarter, low + 3.0F * quarter}) {
+    for (std::size_t i = 0; i < kNodes.size(); ++i) {
+      const float x = middle + quarter * kNodes[i];
+      const float within = share_inside_side((outer.to - rho * x) * scale) -
+                           share_inside_side((outer.from - rho * x) * scale);
+      sum += kWeights[i] * std::exp(-0.5F * x * x) * within;
+    }
+  }
+  return std::max(0.0F, 0.39894228F * quarter * sum);
 }
 
 bool meets_another(const std::vector<FieldLine>& lines, std::size_t mine,
@@ -115,6 +145,23 @@ struct FieldPaintView::Pixel {
     const Eigen::Vector2f slope = derivative.transpose() * n;
     return n.dot(ray) / (sigma_px * std::sqrt(slope.squaredNorm() + 1e-20F));
   }
+  /// The direction in the image, unit, in which n·ray grows.
+  Eigen::Vector2f normal(const Eigen::Vector3f& n) const {
+    return (derivative.transpose() * n).normalized();
+  }
+};
+
+/// A line beside the pixel, as its Gaussian sees it.
+struct FieldPaintView::Strip {
+  Band sides;
+  Band ends;
+  float far_end = 1.0F;  ///< share that an arc's farther end leaves
+  bool whole = true;     ///< no end is near
+
+  float between_sides() const {
+    return std::max(0.0F, share_inside_side(sides.to) - share_inside_side(sides.from));
+  }
+  float share() const { return whole ? between_sides() : far_end * share_of_both(sides, ends); }
 };
 
 FieldPaintView::FieldPaintView(const FieldPaint& paint, const Eigen::Isometry3d& cMw,
@@ -184,50 +231,77 @@ FieldPaintView::Pixel FieldPaintView::pixel_at(int u, int v, const Eigen::Vector
   return pixel;
 }
 
-/// Of lines that cross, the paint is what neither leaves bare.
+/// The paint of lines that cross counts once: Σ P(i) − Σ P(i and j), what three have in common
+/// left out.
 float FieldPaintView::share_of(Pixel& pixel) const {
   const auto near = paint_->near(pixel.p.cast<double>(), pixel.reach_m);
   if (near.begin() == near.end()) return 0.0F;
   pixel.derivative =
       std::visit([&](const auto& m) { return ray_derivative(m, pixel.uv, pixel.ray); }, *model_);
-  float bare = 1.0F;
-  for (const std::uint16_t i : near)
-    bare *=
-        1.0F - (paint_->lines()[i].kind == FieldLine::Kind::segment ? share_of(straight_[i], pixel)
-                                                                    : share_of(round_[i], pixel));
-  return 1.0F - bare;
+  std::array<Strip, kMostStrips> strips;
+  std::size_t count = 0;
+  float share = 0.0F;
+  for (const std::uint16_t i : near) {
+    if (count == kMostStrips) break;
+    const bool straight = paint_->lines()[i].kind == FieldLine::Kind::segment;
+    const auto strip = straight ? strip_of(straight_[i], pixel) : strip_of(round_[i], pixel);
+    const float alone = strip ? strip->share() : 0.0F;
+    if (alone < kLeastShare) continue;
+    share += alone;
+    for (std::size_t j = 0; j < count; ++j) {
+      const float of_strip = alone / std::max(strip->between_sides(), kLeastShare);
+      const float of_other = strips[j].share() / std::max(strips[j].between_sides(), kLeastShare);
+      share -= of_strip * of_other * share_of_both(strips[j].sides, strip->sides);
+    }
+    strips[count++] = *strip;
+  }
+  return std::clamp(share, 0.0F, 1.0F);
 }
 
-float FieldPaintView::share_of(const Straight& line, const Pixel& pixel) const {
+std::optional<FieldPaintView::Strip> FieldPaintView::strip_of(const Straight& line,
+                                                              const Pixel& pixel) const {
   const float across = line.across.dot(pixel.ray) / pixel.w;
-  if (std::abs(across) > line.half_width + pixel.reach_m) return 0.0F;
+  if (std::abs(across) > line.half_width + pixel.reach_m) return std::nullopt;
   const float along = line.along.dot(pixel.ray) / pixel.w;
-  if (along < -pixel.reach_m || along > line.length + pixel.reach_m) return 0.0F;
+  if (along < -pixel.reach_m || along > line.length + pixel.reach_m) return std::nullopt;
   const Eigen::Vector3f half = line.half_width * floor_w_;
-  float share = share_between(pixel.distance(half - line.across, sigma_px_),
-                              pixel.distance(half + line.across, sigma_px_));
-  if (along < pixel.reach_m || along > line.length - pixel.reach_m)
-    share *= share_between(pixel.distance(line.along, sigma_px_),
-                           pixel.distance(line.length * floor_w_ - line.along, sigma_px_));
-  return share;
+  Strip strip;
+  strip.sides = {pixel.normal(line.across), -pixel.distance(half + line.across, sigma_px_),
+                 pixel.distance(half - line.across, sigma_px_)};
+  strip.whole = along > pixel.reach_m && along < line.length - pixel.reach_m;
+  if (strip.whole) return strip;
+  strip.ends = {pixel.normal(line.along), -pixel.distance(line.along, sigma_px_),
+                pixel.distance(line.length * floor_w_ - line.along, sigma_px_)};
+  return strip;
 }
 
-float FieldPaintView::share_of(const Round& line, const Pixel& pixel) const {
+std::optional<FieldPaintView::Strip> FieldPaintView::strip_of(const Round& line,
+                                                              const Pixel& pixel) const {
   const Eigen::Vector2f out(line.x.dot(pixel.ray), line.y.dot(pixel.ray));
   const float range = out.norm();
-  if (std::abs(range / pixel.w - line.radius) > line.half_width + pixel.reach_m) return 0.0F;
+  if (std::abs(range / pixel.w - line.radius) > line.half_width + pixel.reach_m)
+    return std::nullopt;
   const Eigen::Vector2f radial = out / (range + 1e-9F);
   const Eigen::Vector3f outward = radial.x() * line.x + radial.y() * line.y;
-  const float share = share_between(
-      pixel.distance((line.radius + line.half_width) * floor_w_ - outward, sigma_px_),
-      pixel.distance(outward - (line.radius - line.half_width) * floor_w_, sigma_px_));
-  if (line.closed || share == 0.0F) return share;
-  const float past_begin =
-      pixel.distance(line.begin.x() * line.y - line.begin.y() * line.x, sigma_px_);
-  const float before_end = pixel.distance(line.end.y() * line.x - line.end.x() * line.y, sigma_px_);
-  if (line.reflex)
-    return share * (1.0F - share_inside_side(-past_begin) * share_inside_side(-before_end));
-  return share * share_inside_side(past_begin) * share_inside_side(before_end);
+  const Eigen::Vector3f inner = (line.radius - line.half_width) * floor_w_;
+  const Eigen::Vector3f outer = (line.radius + line.half_width) * floor_w_;
+  Strip strip;
+  strip.sides = {pixel.normal(outward), -pixel.distance(outward - inner, sigma_px_),
+                 pixel.distance(outer - outward, sigma_px_)};
+  if (line.closed) return strip;
+  // The sides of the sector, straight through the centre: which of them is near?
+  const Eigen::Vector3f after_begin = line.begin.x() * line.y - line.begin.y() * line.x;
+  const Eigen::Vector3f before_end = line.end.y() * line.x - line.end.x() * line.y;
+  const bool near_begin = radial.dot(line.begin) > radial.dot(line.end);
+  const Eigen::Vector3f& nearer = near_begin ? after_begin : before_end;
+  strip.ends = {pixel.normal(nearer), -pixel.distance(nearer, sigma_px_), 2.0F * kTails};
+  if (!line.reflex)
+    strip.far_end =
+        share_inside_side(pixel.distance(near_begin ? before_end : after_begin, sigma_px_));
+  else if (radial.dot(near_begin ? line.begin : line.end) < 0.0F)
+    return strip;  // opposite of both ends
+  strip.whole = false;
+  return strip;
 }
 
 }  // namespace vigia::sim

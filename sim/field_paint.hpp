@@ -4,6 +4,7 @@
 #include "surface.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -63,11 +64,12 @@ class FieldPaintView {
     bool reflex;  ///< more than half a circle
   };
   struct Pixel;
+  struct Strip;
 
   Pixel pixel_at(int u, int v, const Eigen::Vector3f& ray) const;
   float share_of(Pixel& pixel) const;
-  float share_of(const Straight& line, const Pixel& pixel) const;
-  float share_of(const Round& line, const Pixel& pixel) const;
+  std::optional<Strip> strip_of(const Straight& line, const Pixel& pixel) const;
+  std::optional<Strip> strip_of(const Round& line, const Pixel& pixel) const;
 
   const FieldPaint* paint_;
   const CameraModel* model_;

@@ -35,6 +35,9 @@ constexpr int kKidnapTrials = 500;
 constexpr int kKidnapAt = 30;
 constexpr int kRecovery = 25;  // frames
 constexpr int kTriBotsDrives = 20;
+constexpr int kFoxDrives = 20;
+constexpr int kFoxFrames = 3000;
+constexpr double kFoxTeleportsPerM = 0.005;
 
 const std::vector<FrameMethod> kAllMethods{
     FrameMethod::printed, FrameMethod::as_published, FrameMethod::corrected, FrameMethod::tracked,
@@ -318,6 +321,24 @@ void add_kidnapped(const MinhoRun& run) {
   }
 }
 
+/// Fox's protocol: teleports at 0.005 per metre, recovered when below 45 cm for 10 s.
+void add_teleported(const MinhoRun& run, const FieldMap& map) {
+  FieldDriveParams params;
+  params.teleports_per_m = kFoxTeleportsPerM;
+  params.count = kFoxFrames;
+  const auto drives = evaluation::drive_field_seeds(map, params, all_trackers(), kFirstSeed,
+                                                    run.trials(kFoxDrives), run.options.threads);
+  for (const auto& [localizer, label] : kTrackers) {
+    const auto count = evaluation::count_teleports(drives, localizer, params.period_s);
+    const std::string row = fmt::format("teleported: {}", label);
+    if (count.judged > 0) run.add_share(row + ", recovered", count.recovered, count.judged);
+    run.add_best(row + ", until within 45 cm for good, greatest", "s", count.greatest_s,
+                 count.recovered);
+    run.add_best(row + ", farther off than 45 cm", "frames", count.far, count.frames);
+    run.add_best(row + ", of them not flagged", "frames", count.far_unflagged, count.frames);
+  }
+}
+
 }  // namespace
 
 evaluation::PaperTable reproduce_minho(const PaperOptions& options) {
@@ -343,6 +364,7 @@ evaluation::PaperTable reproduce_minho(const PaperOptions& options) {
   add_drives(run, map);
   add_tribots(run);
   add_kidnapped(run);
+  add_teleported(run, map);
   table.remarks = {
       "measurements are drawn on the floor, not rendered: each row's noise is the table's",
       "published: the paper's \"error less than 1 m\", MUREA's < 10 cm and ~1°, TriBots' 20 and "

@@ -1,3 +1,5 @@
+#include "read_field_map.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -5,8 +7,6 @@
 #include <vector>
 
 #include "vigia/core/angle.hpp"
-#include "vigia/core/field_map.hpp"
-#include "vigia/core/params.hpp"
 #include "vigia/core/plane_geometry.hpp"
 
 namespace vigia {

@@ -1,5 +1,6 @@
 #include "vigia/core/world_map.hpp"
 
+#include "read_field_map.hpp"
 #include "read_landmark.hpp"
 #include "world_checks.hpp"
 

@@ -157,6 +157,7 @@ FieldDrive drive_field(const FieldMap& map, const FieldDriveParams& params,
     riders.push_back(make_rider(localizer, model, params.odometry, seed));
     riders.back().reset(Stamp{}, params.prior ? std::optional<Prior>(prior) : std::nullopt);
   }
+  RandomStream teleports(seed, "teleports");
   std::vector<FalseLine> false_lines;
   if (params.lasting_false_lines)
     false_lines = random_false_lines(map, params.frames.false_lines, random);
@@ -173,7 +174,8 @@ FieldDrive drive_field(const FieldMap& map, const FieldDriveParams& params,
                                              Stamp::from_seconds((k + 1) * params.period_s), truly);
     for (Eigen::Matrix3d& bound : bounds)
       bound = predicted_bound(bound, before, truly, params.odometry);
-    if (params.kidnap_at && *params.kidnap_at == k) {
+    const bool teleported = teleports.uniform(0.0, 1.0) < params.teleports_per_m * truly.trans;
+    if (teleported || (params.kidnap_at && *params.kidnap_at == k)) {
       driver.kidnap();
       bounds.fill(no_prior.asDiagonal());
     }
@@ -184,8 +186,9 @@ FieldDrive drive_field(const FieldMap& map, const FieldDriveParams& params,
     for (std::size_t i = 0; i < riders.size(); ++i) {
       riders[i].predict(u);
       riders[i].update(frame.scan);
-      drive[localizers[i]].push_back(
-          {driver.truth(), riders[i].belief(), bounds[measures_by_goals(localizers[i]) ? 1 : 0]});
+      drive[localizers[i]].push_back({driver.truth(), riders[i].belief(),
+                                      bounds[measures_by_goals(localizers[i]) ? 1 : 0],
+                                      teleported});
     }
   }
   return drive;
@@ -237,6 +240,55 @@ FieldDriveErrors drive_errors(const std::vector<FieldDrive>& drives, FieldLocali
   errors.nees /= errors.right;
   errors.pcrlb_ratio = pcrlb_ratio(squares, bounds, 1);
   return errors;
+}
+
+namespace {
+
+/// Frames from a teleport to the beginning of the first @p hold frames in a row below @p near_m,
+/// before @p end.
+std::optional<std::size_t> recovery_after(const std::vector<FieldDriveSample>& samples,
+                                          std::size_t begin, std::size_t end, std::size_t hold,
+                                          double near_m) {
+  std::size_t in_a_row = 0;
+  for (std::size_t k = begin; k < end; ++k) {
+    in_a_row = samples[k].error_m() < near_m ? in_a_row + 1 : 0;
+    if (in_a_row == hold) return k + 1 - hold - begin;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+TeleportCount count_teleports(const std::vector<FieldDrive>& drives, FieldLocalizer localizer,
+                              double period_s, const TeleportRule& rule) {
+  TeleportCount count;
+  const auto frames_of = [&](double seconds) {
+    return static_cast<std::size_t>(std::lround(seconds / period_s));
+  };
+  for (const FieldDrive& drive : drives) {
+    const std::vector<FieldDriveSample>& samples = drive.at(localizer);
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+      ++count.frames;
+      if (samples[k].error_m() > rule.near_m) {
+        ++count.far;
+        if (!samples[k].flagged()) ++count.far_unflagged;
+      }
+      if (!samples[k].teleported) continue;
+      ++count.teleports;
+      std::size_t end = k + 1;
+      while (end < samples.size() && !samples[end].teleported) ++end;
+      if (end - k < frames_of(rule.judged_s)) continue;
+      ++count.judged;
+      const auto after = recovery_after(samples, k, end, frames_of(rule.hold_s), rule.near_m);
+      if (!after) continue;
+      ++count.recovered;
+      const double seconds = static_cast<double>(*after) * period_s;
+      count.mean_s += seconds;
+      count.greatest_s = std::max(count.greatest_s, seconds);
+    }
+  }
+  if (count.recovered > 0) count.mean_s /= count.recovered;
+  return count;
 }
 
 KidnapCount count_kidnapped(const std::vector<FieldDrive>& drives, FieldLocalizer localizer,

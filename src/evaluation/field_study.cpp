@@ -12,6 +12,7 @@
 #include "vigia/evaluation/metrics.hpp"
 #include "vigia/localization/field_grid.hpp"
 #include "vigia/localization/field_match.hpp"
+#include "vigia/localization/field_posterior.hpp"
 #include "vigia/localization/murea.hpp"
 
 namespace vigia::evaluation {
@@ -71,9 +72,10 @@ FrameOutcome of_tracked(const Methods& methods, const FieldFrame& frame, RandomS
   start.y += kStart_m * random.normal();
   start.theta = wrap_angle(start.theta + kStartTurn * random.normal());
   const auto fix = localization::refine_field_pose(methods.model, frame.scan.points, start);
-  return fix.status == localization::FieldFixStatus::degenerate
-             ? FrameOutcome{}
-             : outcome(frame, fix.pose, fix.covariance);
+  if (fix.status == localization::FieldFixStatus::degenerate) return {};
+  const auto posterior = localization::posterior_about(methods.model, frame.scan.points,
+                                                       methods.model.groups_of(frame.scan), fix);
+  return outcome(frame, posterior.mean, posterior.covariance);
 }
 
 FrameOutcome of_cold(const Methods& methods, const FieldFrame& frame) {

@@ -7,6 +7,7 @@
 #include "vigia/core/angle.hpp"
 #include "vigia/core/plane_geometry.hpp"
 #include "vigia/localization/field_grid.hpp"
+#include "vigia/localization/field_posterior.hpp"
 
 namespace vigia::localization {
 namespace {
@@ -15,6 +16,7 @@ constexpr double kScale = 200.0;   // 16 bits hold 300 points
 constexpr double kReach_m = 10.0;  // a point farther off takes no part
 constexpr std::size_t kFewestPoints = 6;
 constexpr std::size_t kMostPoints = 300;
+constexpr double kLikely = 0.05;  // suggestions of this weight get the moments of their posterior
 constexpr double kSpreads_m[] = {0.10, 0.16, 0.25, 0.40};
 
 bool same_pose(const Pose2& a, const Pose2& b, double metres, double radians) {
@@ -190,7 +192,14 @@ std::vector<FieldMatcher::Suggestion> FieldMatcher::match(const FieldScan& scan)
   });
   if (found.size() > static_cast<std::size_t>(params_.hypotheses))
     found.resize(static_cast<std::size_t>(params_.hypotheses));
-  if (!found.empty()) weigh_suggestions(found);
+  if (found.empty()) return found;
+  weigh_suggestions(found);
+  for (Suggestion& suggestion : found) {
+    if (suggestion.weight < kLikely) break;
+    const FieldPosterior posterior = posterior_about(*model_, scan.points, groups, suggestion.fix);
+    suggestion.fix.pose = posterior.mean;
+    suggestion.fix.covariance = posterior.covariance;
+  }
   return found;
 }
 

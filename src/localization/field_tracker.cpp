@@ -7,13 +7,15 @@
 #include <Eigen/Dense>
 
 #include "vigia/core/angle.hpp"
+#include "vigia/localization/field_posterior.hpp"
 
 namespace vigia::localization {
 namespace {
 
 constexpr double kSameHypothesis_m = 0.15;
 constexpr double kSameTurn = 0.06;
-constexpr double kForgotten = 60.0;  // log weight below the best's at which a hypothesis goes
+constexpr double kForgotten = 60.0;   // log weight below the best's at which a hypothesis goes
+constexpr double kIntegrated = -7.0;  // log weight from which a hypothesis is integrated over
 constexpr double kUsualGain = 0.05;
 constexpr double kFallen = 0.35;  // of the log-likelihood a point: about a fifth of the points lost
 
@@ -79,6 +81,12 @@ void FieldTracker::refine_all(const FieldScan& scan, const std::vector<StraightG
     if (!best) continue;
     hypothesis.pose = best->pose;
     hypothesis.covariance = best->covariance;
+    if (hypothesis.log_weight > kIntegrated) {
+      const FieldPosterior posterior = posterior_about(*model_, scan.points, groups, *best, prior);
+      hypothesis.pose = posterior.mean;
+      hypothesis.covariance = posterior.covariance;
+      evidence = posterior.log_evidence + model_->log_likelihood_of_sightings(scan, posterior.mean);
+    }
     hypothesis.log_weight += evidence;
   }
 }
@@ -138,9 +146,7 @@ void FieldTracker::update(const FieldScan& scan) {
   const bool unsure = belief_.status != BeliefStatus::tracking && since_check_ >= 3;
   const bool check = hypotheses_.empty() || since_check_ >= params_.check_every || unsure ||
                      (evidence_has_fallen() && since_check_ >= 2);
-  // One hypothesis alone needs no weight.
-  std::vector<StraightGroup> groups;
-  if (check || hypotheses_.size() > 1) groups = model_->groups_of(scan);
+  const std::vector<StraightGroup> groups = model_->groups_of(scan);
   const Matches matches = check ? matcher_.match(scan) : Matches{};
   refine_all(scan, groups, matches);
   if (check) {

@@ -19,7 +19,6 @@ namespace {
 constexpr double kClusterRadius_m = 0.5;
 constexpr double kClusterTurn = 0.35;
 constexpr std::size_t kMostHypotheses = 4;
-constexpr std::size_t kMostCorrected = 12;
 constexpr double kWidening = 1.5;  // of a suggestion's σ, so that its samples cover it
 constexpr double kKldQuantile = 2.326;
 const Eigen::Matrix3d kTinyVariance = 1e-10 * Eigen::Matrix3d::Identity();
@@ -132,9 +131,8 @@ constexpr std::size_t kNoCluster = 1000;
 
 /// Particles about one place, the heaviest cluster first.
 struct Clusters {
-  std::vector<PoseHypothesis> all;    ///< mean, spread and weight of each
-  std::vector<std::size_t> of;        ///< per particle, or kNoCluster
-  std::vector<std::size_t> heaviest;  ///< per cluster, its heaviest particle
+  std::vector<PoseHypothesis> all;  ///< mean, spread and weight of each
+  std::vector<std::size_t> of;      ///< per particle, or kNoCluster
 };
 
 /// Mean and spread of the free particles about @p centre, which become the cluster's.
@@ -171,7 +169,6 @@ Clusters clusters_of(const std::vector<Particle>& particles, std::size_t most) {
     if (heaviest == particles.size()) break;
     clusters.all.push_back(
         gather(particles, particles[heaviest].pose, clusters.all.size(), clusters.of));
-    clusters.heaviest.push_back(heaviest);
   }
   return clusters;
 }
@@ -366,7 +363,7 @@ double Mcl::log_weight_of_sightings(const FieldScan& scan, Particle& particle) c
 double Mcl::log_weight(const FieldScan& scan, Particle& particle) const {
   if (params_.method == MclParams::Method::as_described)
     return log_agreement(model_->map(), scan, particle.pose);
-  return model_->log_likelihood(scan.points, particle.pose, clutter_) +
+  return model_->line_evidence(scan.points, groups_, particle.pose, clutter_) +
          log_weight_of_sightings(scan, particle);
 }
 
@@ -473,27 +470,6 @@ void Mcl::spread_copies() {
   }
 }
 
-void Mcl::correct_between_clusters(const FieldScan& scan) {
-  const Clusters clusters = clusters_of(particles_, kMostCorrected);
-  if (clusters.all.size() < 2) return;
-  std::vector<std::size_t> likeliest = clusters.heaviest;
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    if (clusters.of[i] == kNoCluster) continue;
-    std::size_t& best = likeliest[clusters.of[i]];
-    if (log_likelihoods_[i] > log_likelihoods_[best]) best = i;
-  }
-  const std::vector<StraightGroup> groups = model_->groups_of(scan);
-  std::vector<double> corrections;
-  for (const std::size_t i : likeliest) {
-    const Pose2& pose = particles_[i].pose;
-    corrections.push_back(model_->line_evidence(scan.points, groups, pose, clutter_) -
-                          model_->log_likelihood(scan.points, pose, clutter_));
-  }
-  const double least = *std::min_element(corrections.begin(), corrections.end());
-  for (std::size_t i = 0; i < particles_.size(); ++i)
-    log_likelihoods_[i] += clusters.of[i] == kNoCluster ? least : corrections[clusters.of[i]];
-}
-
 /// Follows the likelihood of the estimate and the share of clutter.
 void Mcl::watch_likelihood(const FieldScan& scan) {
   const FieldLinearisation at = model_->linearise(scan.points, belief_.pose, clutter_);
@@ -508,17 +484,17 @@ void Mcl::watch_likelihood(const FieldScan& scan) {
 void Mcl::update(const FieldScan& scan) {
   if (scan.points.empty() && scan.goals.empty() && scan.posts.empty()) return;
   belief_.stamp = scan.stamp;
+  const bool best = params_.method == MclParams::Method::best;
+  if (best) groups_ = model_->groups_of(scan);
   log_likelihoods_ = draw_motion_noise(scan);
   for (std::size_t i = 0; i < particles_.size(); ++i)
     log_likelihoods_[i] += log_weight(scan, particles_[i]);
   const std::size_t own = particles_.size();
-  const bool best = params_.method == MclParams::Method::best;
   const bool fallen = fast_ && slow_ && *fast_ < *slow_ - kUsualFall;
   if (best && (++since_check_ >= params_.check_every || (fallen && since_check_ >= 2))) {
     since_check_ = 0;
     inject(scan);
   }
-  if (best) correct_between_clusters(scan);
   weigh_by(log_likelihoods_, particles_);
   if (best && model_->lines_symmetric()) fold_twins();
   const double effective = effective_number(particles_);

@@ -188,6 +188,37 @@ TEST(FieldDrive, WithAPriorTheRightHalfIsKeptOnASymmetricField) {
   }
 }
 
+TEST(FieldDrive, BesideFalseLinesThatLastBeliefsAreAsFarOffAsTheySay) {
+  FieldDriveParams params;
+  params.count = 250;
+  params.frames.clutter_share = 0.55;
+  params.frames.clutter = FieldFrameParams::Clutter::straight;
+  const std::vector<FieldLocalizer> all{FieldLocalizer::field_grid, FieldLocalizer::mcl};
+  // Seeds at which points of one false line, each taken for a fact of its own, gave 2.5 and 3.4.
+  const auto drives = drive_field_seeds(field("12x8"), params, all, 201, 3, 1);
+  for (const FieldLocalizer localizer : all) {
+    const FieldDriveErrors errors = drive_errors(drives, localizer);
+    EXPECT_LT(errors.nees, 1.6) << static_cast<int>(localizer);
+    EXPECT_GT(errors.nees, 0.6) << static_cast<int>(localizer);
+    EXPECT_LT(errors.max_m, 0.15) << static_cast<int>(localizer);
+  }
+}
+
+TEST(FieldFrames, AmongClutterErrorsAreThoseThatTheCovarianceStates) {
+  FieldFrameParams params;
+  params.clutter_share = 0.4;
+  for (const auto kind :
+       {FieldFrameParams::Clutter::uniform, FieldFrameParams::Clutter::straight}) {
+    params.clutter = kind;
+    const FrameStudy study =
+        study_frames(field("12x8"), params, {FrameMethod::tracked}, 777, 200, 1);
+    const FrameErrors errors = frame_errors(study, FrameMethod::tracked);
+    // 600 degrees of freedom, ± 3 standard errors of heavy tails; by the curvature 1.4 and 2.1.
+    EXPECT_GT(errors.nees, 0.75);
+    EXPECT_LT(errors.nees, 1.25);
+  }
+}
+
 TEST(FieldDrive, FalseLinesThatLastDoNotLureTheRobotAway) {
   FieldDriveParams params;
   params.count = 400;
@@ -222,6 +253,47 @@ TEST(FieldDrive, AKidnappedRobotIsFoundAgainWithinASecond) {
   for (const FieldLocalizer localizer : all)
     EXPECT_EQ(count_kidnapped(drives, localizer, 20, 25).recovered, 5)
         << static_cast<int>(localizer);
+}
+
+/// A drive of which the errors alone count, 1 s a frame.
+FieldDrive drive_of_errors(const std::vector<double>& errors_m, std::size_t teleported_at) {
+  FieldDrive drive;
+  for (std::size_t k = 0; k < errors_m.size(); ++k) {
+    FieldDriveSample sample;
+    sample.belief.pose.x = errors_m[k];
+    sample.teleported = k == teleported_at;
+    drive[FieldLocalizer::mcl].push_back(sample);
+  }
+  return drive;
+}
+
+TEST(FieldDrive, ATeleportedRobotHasRecoveredWhenItStaysNearForTenSeconds) {
+  std::vector<double> errors(30, 0.1);
+  for (const std::size_t k : {5U, 6U, 9U}) errors[k] = 2.0;
+  const auto of = [](const std::vector<double>& e, std::size_t at) {
+    return count_teleports({drive_of_errors(e, at)}, FieldLocalizer::mcl, 1.0);
+  };
+  const TeleportCount recovered = of(errors, 5);
+  EXPECT_EQ(recovered.judged, 1);
+  EXPECT_EQ(recovered.recovered, 1);
+  EXPECT_DOUBLE_EQ(recovered.mean_s, 5.0);  // two frames near are not for good
+  EXPECT_EQ(recovered.far, 3);
+  errors[19] = errors[28] = 2.0;
+  EXPECT_EQ(of(errors, 5).recovered, 0);
+  EXPECT_EQ(of(errors, 20).judged, 0);  // too near the end
+}
+
+TEST(FieldDrive, TeleportsComeAtTheirRateByMetre) {
+  FieldDriveParams params;
+  params.count = 800;
+  params.teleports_per_m = 0.1;
+  const auto drives =
+      drive_field_seeds(field("12x8"), params, {FieldLocalizer::odometry}, 51, 10, 1);
+  // About 1.2 m/s: 380 m, 38 ± 6 (σ).
+  const int teleports =
+      count_teleports(drives, FieldLocalizer::odometry, params.period_s).teleports;
+  EXPECT_GT(teleports, 20);
+  EXPECT_LT(teleports, 60);
 }
 
 TEST(Murea, ShortOfCellsItGivesACoarserAnswer) {

@@ -92,13 +92,8 @@ struct FieldMap {
   const FieldGoal* goal(FieldColour colour) const;
 };
 
-class ParamVisitor;
-
-/// The keys of the block `field`: length_m, width_m, margin_m, line_width_m, lines, arcs, goals,
-/// posts. A reader throws InputError.
-void describe(ParamVisitor& v, FieldMap& map);
-
-/// Reads the block. Throws InputError.
+/// Reads the block `field`: length_m, width_m, margin_m, line_width_m, lines, arcs, goals,
+/// posts. Throws InputError.
 FieldMap read_field_map(MapReader reader);
 
 /// Which lines can lie near a point: a grid whose cells list the lines within reach, and the

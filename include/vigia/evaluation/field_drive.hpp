@@ -33,6 +33,7 @@ struct FieldDriveParams {
   int count = 1000;              ///< frames
   bool prior = true;             ///< 10 cm and 3° (σ) at the start; else nothing
   std::optional<int> kidnap_at;  ///< the frame before which the robot is put elsewhere, > 0.5 m off
+  double teleports_per_m = 0.0;  ///< rate at which it is put elsewhere, > 0.5 m off
   /// Straight false lines stay where they are during the drive; else each frame has others.
   bool lasting_false_lines = true;
 };
@@ -43,6 +44,7 @@ struct FieldDriveSample {
   Belief belief;
   Eigen::Matrix3d bound = Eigen::Matrix3d::Zero();  ///< posterior Cramér–Rao bound, goals in it
                                                     ///< for those that measure by them
+  bool teleported = false;                          ///< put elsewhere just before this frame
   double error_m() const { return (belief.pose.position() - truth.position()).norm(); }
   /// Wrong by more than half a metre.
   bool wrong() const { return error_m() > 0.5; }
@@ -87,5 +89,25 @@ struct KidnapCount {
 };
 KidnapCount count_kidnapped(const std::vector<FieldDrive>& drives, FieldLocalizer localizer,
                             int kidnapped_at, int within);
+
+/// Fox's protocol (Fox, Burgard, Dellaert, Thrun 1999): robots put elsewhere while they drive have
+/// recovered when the error stays below near_m for hold_s.
+struct TeleportRule {
+  double near_m = 0.45;
+  double hold_s = 10.0;
+  double judged_s = 15.0;  ///< a teleport is judged if so long a drive follows it undisturbed
+};
+struct TeleportCount {
+  int teleports = 0;
+  int judged = 0;
+  int recovered = 0;
+  double mean_s = 0.0;      ///< from a teleport to the beginning of the time near, if recovered
+  double greatest_s = 0.0;  ///< of these
+  int far = 0;              ///< frames farther off than near_m …
+  int far_unflagged = 0;    ///< … and of them those that the belief does not flag
+  int frames = 0;
+};
+TeleportCount count_teleports(const std::vector<FieldDrive>& drives, FieldLocalizer localizer,
+                              double period_s, const TeleportRule& rule = {});
 
 }  // namespace vigia::evaluation

@@ -61,15 +61,15 @@ class FieldModel {
   /// The same with derivatives. @p spread_m: σ added to every point, to widen the basin.
   FieldLinearisation linearise(const std::vector<FieldPoint>& points, const Pose2& pose,
                                double clutter, double spread_m = 0.0) const;
-  /// Log-evidence for a pose against others far from it, where what is false may lie on straight
-  /// lines: how much better than clutter the points are explained. Those of a straight group lie on
+  /// Log-likelihood where what is false may lie on straight lines: how much better than clutter the
+  /// points are explained. Those of a straight group lie on
   /// the map's lines as this pose has it, or on one straight line that the map lacks,
   ///
   ///   Σ_{i in no group} log(Λ_i/c_i) + Σ_g log(Π_{i∈g} Λ_i/c_i + e^{−line_price} Π_{i∈g} (ρ_i +
   ///   c_i)/c_i),
   ///
-  /// ρ_i the density of point i on its group's own line. Within a hypothesis the likelihood is
-  /// right; between hypotheses it takes the points of one false line for as many independent facts.
+  /// ρ_i the density of point i on its group's own line. log_likelihood() takes the points of one
+  /// false line for as many independent facts.
   double line_evidence(const std::vector<FieldPoint>& points,
                        const std::vector<StraightGroup>& groups, const Pose2& pose,
                        double clutter) const;

@@ -55,8 +55,7 @@ struct Particle {
 /// by odometry and its noise, drawn with the image in view (Grisetti, Stachniss, Burgard 2007),
 /// weigh them by the likelihood of the observation, resample (low variance, size by KLD). Poses
 /// that the present image suggests are injected as samples of a mixture prior – mostly the
-/// particles', a little uniform – weighed by the same likelihood, clusters far apart by
-/// FieldModel::line_evidence().
+/// particles', a little uniform – weighed by the same likelihood, FieldModel::line_evidence().
 ///
 /// Where half a turn changes no line, points never tell a pose from its twin: a particle stands for
 /// both, with the probability of each beside it (Rao–Blackwellised), which goals and posts move.
@@ -86,7 +85,6 @@ class Mcl {
   void inject(const FieldScan& scan);
   void inject_about(const FieldFix& fix, int count, double log_prior, const FieldScan& scan);
   void fold_twins();
-  void correct_between_clusters(const FieldScan& scan);
   void resample();
   void spread_copies();
   void widen_depleted(const FieldScan& scan);
@@ -100,6 +98,7 @@ class Mcl {
   RandomStream random_;
   std::vector<Particle> particles_;
   std::vector<double> log_likelihoods_;
+  std::vector<StraightGroup> groups_;  ///< of the present scan
   /// Of the moves since the last image, not yet drawn: covariance in the particle's own frame.
   Eigen::Matrix3d motion_noise_ = Eigen::Matrix3d::Zero();
   bool given_prior_ = false;
