@@ -128,6 +128,7 @@ ColourSearchResult search_colours(const RadialPlan& plan, const RaySamples& samp
                                   const RadialScanParams& params) {
   const int rays = static_cast<int>(plan.rays.size());
   std::vector<std::optional<RayColour>> found;
+  found.reserve(plan.rays.size());
   for (int k = 0; k < rays; ++k)
     found.push_back(ray_colour(plan.rays[static_cast<std::size_t>(k)], k, samples, params));
   ColourSearchResult result;

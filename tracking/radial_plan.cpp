@@ -96,6 +96,7 @@ RadialPlan plan_rays(const MirrorImage& mirror, int rays, int width, int height)
   RadialPlan plan;
   plan.width = width;
   plan.height = height;
+  plan.middle = mirror.centre;
   std::vector<SamplePlace> places;
   for (int k = 0; k < rays; ++k) {
     RayWalk walk(mirror, 2.0 * kPi * k / rays, width, height);

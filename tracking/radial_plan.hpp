@@ -30,6 +30,7 @@ struct PlannedRay {
 struct RadialPlan {
   int width = 0;
   int height = 0;
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();  ///< from which the rays go
   std::vector<imaging::Run> runs;
   std::size_t pixels = 0;
   std::vector<PlannedRay> rays;

@@ -79,10 +79,12 @@ StripeVector stripe_start(const StripeProfile& profile, int begin, int end,
 struct StripeStep {
   StripeMatrix information = StripeMatrix::Zero();
   StripeVector gradient = StripeVector::Zero();
-  double chi2 = 0.0;
+  double chi2 = 0.0;  ///< of the samples
+  double cost = 0.0;  ///< with what is known before
 
   void know(StripeUnknown what, double found, double expected, double sigma) {
     const double weight = 1.0 / (sigma * sigma);
+    cost += weight * (expected - found) * (expected - found);
     information(what, what) += weight;
     gradient[what] += weight * (expected - found);
   }
@@ -101,6 +103,7 @@ StripeStep stripe_step(const StripeProfile& profile, const StripeVector& x,
     step.gradient += weight * rest * model.gradient;
     step.chi2 += weight * rest * rest;
   }
+  step.cost = step.chi2;
   step.know(kHeight, x[kHeight], height, 0.3 * height);
   step.know(kSigma, x[kSigma], prior.blur_px, 0.35 * prior.blur_px);
   step.know(kSlant, x[kSlant], 0.0, 0.03 * height);
@@ -116,25 +119,34 @@ void keep_possible(StripeVector& x, const StripePrior& prior) {
 
 std::optional<StripeFit> fit_stripe(const StripeProfile& profile, int begin, int end,
                                     const StripePrior& prior) {
-  constexpr int kStripeSteps = 4;
+  constexpr int kStripeSteps = 8;
+  constexpr double kStill = 0.05;    // of χ², that a step would gain
+  constexpr double kShorter = 0.4;   // of a step that worsens the fit
   constexpr double kSettled = 0.02;  // px, of the centre in the last step
   StripeVector x = stripe_start(profile, begin, end, prior);
   const double height = x[kHeight];
-  const double first = profile.position(0);
-  const double last = profile.position(profile.count - 1);
-  StripeStep step;
-  Eigen::LDLT<StripeMatrix> factors;
-  double moved = 0.0;
-  for (int k = 0; k < kStripeSteps; ++k) {
-    step = stripe_step(profile, x, prior, height);
+  StripeStep step = stripe_step(profile, x, prior, height);
+  Eigen::LDLT<StripeMatrix> factors(step.information);
+  StripeVector change = factors.solve(step.gradient);
+  double length = 1.0;
+  for (int k = 0; k < kStripeSteps && change.dot(step.gradient) > kStill; ++k) {
+    StripeVector trial = x + length * change;
+    keep_possible(trial, prior);
+    const StripeStep next = stripe_step(profile, trial, prior, height);
+    if (!(next.cost < step.cost)) {
+      length *= kShorter;
+      continue;
+    }
+    length = 1.0;
+    x = trial;
+    step = next;
     factors.compute(step.information);
-    const StripeVector change = factors.solve(step.gradient);
-    x += change;
-    keep_possible(x, prior);
-    moved = std::abs(change[kCentre]);
-    if (!x.allFinite() || x[kCentre] < first || x[kCentre] > last) return std::nullopt;
+    change = factors.solve(step.gradient);
   }
-  if (moved > kSettled || x[kHeight] <= 0.0) return std::nullopt;
+  const bool inside =
+      x[kCentre] >= profile.start_px && x[kCentre] <= profile.position(profile.count - 1);
+  if (!x.allFinite() || !inside || std::abs(change[kCentre]) > kSettled || x[kHeight] <= 0.0)
+    return std::nullopt;
   const StripeMatrix covariance = factors.solve(StripeMatrix::Identity());
   StripeFit fit;
   fit.centre_px = x[kCentre];

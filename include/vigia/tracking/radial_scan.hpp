@@ -45,8 +45,7 @@ struct RadialScanParams {
   double max_line_px = 40.0;      ///< widest line along a ray
   double blur_px = 0.8;           ///< σ of the camera's blur, where the fit begins
   double line_width_m = 0.125;    ///< of the field's lines; counts where the floor is known
-  double max_slant = from_deg(78.0);  ///< rad from a line's normal to the ray on the floor, at most
-  double max_misfit = 4.0;            ///< χ² per degree of freedom of a line's profile, at most
+  double max_misfit = 4.0;        ///< χ² per degree of freedom of a line's profile, at most
 };
 
 /// A ray's crossing of a painted line. inner and outer are where the ray crosses the line's two
