@@ -8,6 +8,7 @@
 
 #include "vigia/evaluation/field_frames.hpp"
 #include "vigia/localization/field_match.hpp"
+#include "vigia/localization/field_posterior.hpp"
 #include "vigia/localization/field_refine.hpp"
 #include "vigia/localization/mcl.hpp"
 #include "vigia/localization/murea.hpp"
@@ -48,6 +49,23 @@ void BM_RefineTracked(benchmark::State& state) {
   }
 }
 BENCHMARK(BM_RefineTracked)->Unit(benchmark::kMillisecond);
+
+/// The same with the scan's straight groups and the moments of the posterior.
+void BM_PosteriorTracked(benchmark::State& state) {
+  const Frames frames(false);
+  const localization::FieldModel model(frames.map);
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const auto& frame = frames.frames[i++ % kFrames];
+    Pose2 start = frame.truth;
+    start.x += 0.03;
+    start.theta += 0.01;
+    const auto fix = localization::refine_field_pose(model, frame.scan.points, start);
+    benchmark::DoNotOptimize(
+        localization::posterior_about(model, frame.scan.points, model.groups_of(frame.scan), fix));
+  }
+}
+BENCHMARK(BM_PosteriorTracked)->Unit(benchmark::kMillisecond);
 
 void BM_GlobalMatch(benchmark::State& state) {
   const Frames frames(false);

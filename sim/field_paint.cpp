@@ -24,12 +24,17 @@ float share_inside_side(float d) {
   return 0.5F + 0.5F * std::erf(d * 0.70710678F);
 }
 
-/// What lies between two parallel sides, in σ along the normal from the pixel.
+}  // namespace
+
+/// What lies between two parallel sides, in σ along the normal from the pixel. A Strip has them, so
+/// it has no place in an anonymous namespace.
 struct Band {
   Eigen::Vector2f normal = Eigen::Vector2f::UnitX();
   float from = -kTails;
   float to = kTails;
 };
+
+namespace {
 
 /// Share of a Gaussian inside two bands: a rectangle of the normal distribution of two variables
 /// that are correlated as the bands' normals are, by Gauss's rule in two halves over the narrower.
@@ -157,10 +162,13 @@ struct FieldPaintView::Strip {
   Band ends;
   float far_end = 1.0F;  ///< share that an arc's farther end leaves
   bool whole = true;     ///< no end is near
+  bool round = false;
 
   float between_sides() const {
     return std::max(0.0F, share_inside_side(sides.to) - share_inside_side(sides.from));
   }
+  /// Share of what lies between the sides that an arc's ends leave.
+  float kept() const { return round ? share() / std::max(between_sides(), kLeastShare) : 1.0F; }
   float share() const { return whole ? between_sides() : far_end * share_of_both(sides, ends); }
 };
 
@@ -248,11 +256,12 @@ float FieldPaintView::share_of(Pixel& pixel) const {
     const float alone = strip ? strip->share() : 0.0F;
     if (alone < kLeastShare) continue;
     share += alone;
-    for (std::size_t j = 0; j < count; ++j) {
-      const float of_strip = alone / std::max(strip->between_sides(), kLeastShare);
-      const float of_other = strips[j].share() / std::max(strips[j].between_sides(), kLeastShare);
-      share -= of_strip * of_other * share_of_both(strips[j].sides, strip->sides);
-    }
+    // A straight line that ends on another reaches its far side: what their sides have in common,
+    // both have. An arc ends in another's middle.
+    for (std::size_t j = 0; j < count; ++j)
+      share -=
+          std::min({strip->kept() * strips[j].kept() * share_of_both(strips[j].sides, strip->sides),
+                    alone, strips[j].share()});
     strips[count++] = *strip;
   }
   return std::clamp(share, 0.0F, 1.0F);
@@ -286,6 +295,7 @@ std::optional<FieldPaintView::Strip> FieldPaintView::strip_of(const Round& line,
   const Eigen::Vector3f inner = (line.radius - line.half_width) * floor_w_;
   const Eigen::Vector3f outer = (line.radius + line.half_width) * floor_w_;
   Strip strip;
+  strip.round = true;
   strip.sides = {pixel.normal(outward), -pixel.distance(outward - inner, sigma_px_),
                  pixel.distance(outer - outward, sigma_px_)};
   if (line.closed) return strip;

@@ -17,6 +17,12 @@ Eigen::Matrix<double, 2, 4> lever(double red, double blue) {
   return J;
 }
 
+/// A channel lies off the dot's centre by its own shift less that of the mixture.
+Eigen::Matrix<double, 2, 4> lever_of(int channel, const Eigen::Array3d& share) {
+  return lever((channel == kRedChannel ? 1.0 : 0.0) - share[kRedChannel],
+               (channel == kBlueChannel ? 1.0 : 0.0) - share[kBlueChannel]);
+}
+
 }  // namespace
 
 Eigen::Vector2d ChromaticShift::of_centre(const Eigen::Array3d& share) const {
@@ -28,15 +34,17 @@ Eigen::Matrix2d ChromaticShift::covariance_of(const Eigen::Array3d& share) const
   return J * covariance * J.transpose();
 }
 
+Eigen::Vector2d ChromaticShift::of_channel(int channel, const Eigen::Array3d& share) const {
+  return lever_of(channel, share) * shift;
+}
+
 ChromaticShift estimate_shift(const std::vector<DotPulls>& dots, const ChromaticShift& prior) {
   Eigen::Matrix4d information = prior.covariance.llt().solve(Eigen::Matrix4d::Identity());
   Eigen::Vector4d right = information * prior.shift;
   for (const DotPulls& dot : dots)
     for (int c = 0; c < 3; ++c) {
       const auto& channel = dot.channels[static_cast<std::size_t>(c)];
-      // A channel lies off the dot's centre by its own shift less that of the mixture.
-      const auto J = lever((c == kRedChannel ? 1.0 : 0.0) - dot.share[kRedChannel],
-                           (c == kBlueChannel ? 1.0 : 0.0) - dot.share[kBlueChannel]);
+      const auto J = lever_of(c, dot.share);
       information += J.transpose() * channel.information * J;
       right += J.transpose() * channel.pull;
     }

@@ -29,6 +29,8 @@ struct ChromaticShift {
   /// Of a dot's fitted centre against where green has it.
   Eigen::Vector2d of_centre(const Eigen::Array3d& share) const;
   Eigen::Matrix2d covariance_of(const Eigen::Array3d& share) const;
+  /// Of one channel (red, green, blue) against a centre that the channels make by their shares.
+  Eigen::Vector2d of_channel(int channel, const Eigen::Array3d& share) const;
 };
 
 /// The shift common to @p dots, by least squares on top of @p prior.

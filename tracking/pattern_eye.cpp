@@ -1,5 +1,6 @@
 #include "pattern_eye.hpp"
 
+#include "bare_dots.hpp"
 #include "pixel.hpp"
 
 #include <algorithm>
@@ -30,7 +31,9 @@ constexpr double kMaxGrowthUnits = 1.0;
 constexpr double kMaxCentreOut = 0.3;
 constexpr double kMaxCentreIn = 1.3;
 constexpr double kMaxCentreOff = 0.6;
-constexpr double kMaxStretch = 1.4;  // of a dot along one axis against the other
+constexpr double kMaxCentreOddness = 1.2;
+constexpr double kMaxLoneOddness = 1.0;  // of a dot whose twin isn't seen
+constexpr double kMaxStretch = 1.4;      // of a dot along one axis against the other
 // By how much the channels may move against each other from frame to frame (px): at rest, by focus
 // and temperature, and with each pixel that the pattern moves over the image.
 constexpr double kShiftDrift = 0.002;
@@ -81,18 +84,16 @@ Window on_grid(const Window& window, const Window& frame) {
   return intersect({u, v, window.right() + 1 - u, window.bottom() + 1 - v}, frame);
 }
 
-/// By how many px the rim of @p shape lies outside that of @p expected, in the mean.
-double growth_of(const EllipseShape& shape, const EllipseShape& expected) {
-  const Ellipse seen = ellipse_of(shape);
-  const Ellipse plane = ellipse_of(expected);
-  return (seen.a * seen.b - plane.a * plane.b) / (0.5 * (seen.a + seen.b + plane.a + plane.b));
-}
-
 /// Whether a dot's growth against the median and its offset from the plane, in units, are those of
 /// a bare dot.
 bool is_bare(double growth, double offset, bool centre) {
   if (!centre) return std::abs(growth) < kMaxGrowthUnits;
   return growth < kMaxCentreOut && growth > -kMaxCentreIn && offset < kMaxCentreOff;
+}
+
+/// The other ring's dot of the same place.
+std::size_t twin_of(std::size_t place) {
+  return place <= kDotsPerRing ? place + kDotsPerRing : place - kDotsPerRing;
 }
 
 std::vector<DotPulls> pulls_of(const PatternSight& sight) {
@@ -229,6 +230,7 @@ PatternSight PatternEye::measure(const PatternCandidate& candidate, const Window
   sight.map = *map;
   hide_misfits(sight);
   sight.chromatic = shrunk(estimate_shift(pulls_of(sight), {}));
+  hide_odd_ones(sight);
   move_to_green(sight);
   if (is_whole_pattern(sight)) read(sight);
   return sight;
@@ -257,6 +259,21 @@ void PatternEye::hide_misfits(PatternSight& sight) const {
     if (!is_bare((growths[i] - *middle) / unit, offset / unit, i == 0) ||
         !fits(dot, sight.map, places[i], dot_radius(sight.shape, static_cast<int>(i))))
       dot.status = DotStatus::hidden;
+  }
+}
+
+// Dots that nothing else bears out must look like the others.
+void PatternEye::hide_odd_ones(PatternSight& sight) const {
+  const DotPlaces places = dot_places(sight.shape);
+  std::array<EllipseShape, kPatternDots> expected;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    expected[i] = sight.map.circle(places[i], dot_radius(sight.shape, static_cast<int>(i)));
+  const auto oddness = oddness_of(sight.dots, expected, sight.chromatic);
+  const Dots before = sight.dots;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const bool lone = i > 0 && before[twin_of(i)].status != DotStatus::whole;
+    if ((i == 0 && oddness[i] > kMaxCentreOddness) || (lone && oddness[i] > kMaxLoneOddness))
+      sight.dots[i].status = DotStatus::hidden;
   }
 }
 

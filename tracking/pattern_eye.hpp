@@ -47,6 +47,7 @@ class PatternEye {
   std::optional<PlaneMap> fit_dots(const PatternCandidate& candidate, const imaging::Window& frame,
                                    Dots& dots);
   void hide_misfits(PatternSight& sight) const;
+  void hide_odd_ones(PatternSight& sight) const;
   static void move_to_green(PatternSight& sight);
   bool is_whole_pattern(const PatternSight& sight) const;
   void read(PatternSight& sight);

@@ -35,7 +35,7 @@ double whiteness_noise(const RadialPlan& plan, const RaySamples& samples, double
   std::vector<float> sizes;
   for (const PlannedRay& ray : plan.rays)
     for (int i = 1; i + 1 < ray.count; i += kStride) {
-      const auto at = static_cast<std::size_t>(ray.first + i);
+      const auto at = static_cast<std::size_t>(ray.first) + static_cast<std::size_t>(i);
       if (samples.classes[at - 1] != FieldClass::green ||
           samples.classes[at] != FieldClass::green || samples.classes[at + 1] != FieldClass::green)
         continue;

@@ -26,4 +26,8 @@ bool interrupted() {
   return came != 0;
 }
 
+void Interruption::on_tick(const mission::Tick& tick) {
+  if (interrupted()) throw Interrupted{tick.estimator.now};
+}
+
 }  // namespace vigia::app

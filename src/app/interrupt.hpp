@@ -1,5 +1,7 @@
 #pragma once
 
+#include "vigia/mission/listener.hpp"
+
 namespace vigia::app {
 
 /// From the first call on, SIGINT and SIGTERM ask the program to come to its end, once; a second
@@ -7,5 +9,17 @@ namespace vigia::app {
 void catch_interrupts();
 /// Whether one came.
 bool interrupted();
+
+/// Ends a mission by this exception at the tick after an interrupt.
+struct Interrupted {
+  Stamp at;
+};
+
+/// Hears whether one came, in every tick of a mission.
+class Interruption : public mission::Listener {
+ public:
+  Interruption() { catch_interrupts(); }
+  void on_tick(const mission::Tick& tick) override;
+};
 
 }  // namespace vigia::app

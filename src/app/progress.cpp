@@ -9,6 +9,10 @@ namespace vigia::app {
 
 Progress::Progress(bool quiet) : shown_(!quiet && ::isatty(STDERR_FILENO) != 0) {}
 
+Progress::~Progress() {
+  if (percent_ >= 0) std::fprintf(stderr, "\r%60s\r", "");
+}
+
 void Progress::on_start(const mission::MissionStart& start) {
   length_m_ = start.setup.path.length();
 }
@@ -23,10 +27,6 @@ void Progress::on_tick(const mission::Tick& tick) {
              tick.estimator.now.seconds(), 100.0 * sigma,
              tick.attention ? to_string(tick.attention->gaze) : std::string_view{});
   std::fflush(stderr);
-}
-
-void Progress::on_finish(mission::Outcome /*outcome*/, Stamp /*end*/) {
-  if (shown_) fmt::print(stderr, "\r{:60}\r", "");
 }
 
 }  // namespace vigia::app

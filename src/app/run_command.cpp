@@ -1,6 +1,7 @@
 #include "commands.hpp"
 #include "drive_picture.hpp"
 #include "frame_album.hpp"
+#include "interrupt.hpp"
 #include "progress.hpp"
 
 #include <iostream>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "vigia/evaluation/drive_score.hpp"
 #include "vigia/mission/mission.hpp"
@@ -17,6 +19,8 @@
 
 namespace vigia::app {
 namespace {
+
+constexpr int kInterrupted = 130;  // as a shell says of SIGINT
 
 struct RunOptions {
   std::string mission;
@@ -51,13 +55,14 @@ int run(const RunOptions& options) {
   const mission::MissionSetup setup = mission::load_mission(options.mission, overrides);
   const std::string out =
       options.out.empty() ? fmt::format("runs/{}-{}", setup.name, setup.seed) : options.out;
+  Interruption interruption;
   mission::RunFolder folder(out);
   evaluation::DriveScorer scorer;
   DrivePicture picture;
   FrameAlbum album;
   Progress progress(options.quiet || options.json);
-  const auto outcome =
-      mission::run_mission(setup, setup.seed, {&scorer, &picture, &album, &progress, &folder});
+  const auto outcome = mission::run_mission(
+      setup, setup.seed, {&interruption, &scorer, &picture, &album, &progress, &folder});
   const std::string summary = evaluation::summary_json(scorer.score());
   folder.folder().add("summary.json", summary);
   folder.folder().make("frames");
@@ -94,7 +99,15 @@ void add_run(CLI::App& app, int& status) {
       ->allow_extra_args(false);
   command->add_flag("--json", options->json, "Print summary.json on stdout");
   command->add_flag("--quiet", options->quiet, "No progress line");
-  command->callback([options, &status] { status = run(*options); });
+  command->callback([options, &status] {
+    try {
+      status = run(*options);
+    } catch (const Interrupted& interrupt) {
+      spdlog::error("interrupted at t = {:.1f} s of the mission; no run folder was written",
+                    interrupt.at.seconds());
+      status = kInterrupted;
+    }
+  });
 }
 
 }  // namespace vigia::app

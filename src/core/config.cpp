@@ -185,12 +185,17 @@ void set_config(ConfigNode& root, const std::string& assignment) {
 
   ConfigNode* map = &root;
   for (std::size_t i = 0; i + 1 < keys.size(); ++i) map = &step_into(*map, keys[i], where);
-  for (auto& entry : map->entries) {
-    if (entry.first != keys.back()) continue;
-    entry.second = value;
-    return;
+  const auto entry = std::find_if(map->entries.begin(), map->entries.end(),
+                                  [&](const auto& e) { return e.first == keys.back(); });
+  if (value->kind == ConfigNode::Kind::null) {
+    if (entry == map->entries.end())
+      throw InputError(where, quoted_for_message(keys.back()) + " is not there to be removed");
+    map->entries.erase(entry);
+  } else if (entry != map->entries.end()) {
+    entry->second = value;
+  } else {
+    map->entries.emplace_back(keys.back(), value);
   }
-  map->entries.emplace_back(keys.back(), value);
 }
 
 }  // namespace vigia

@@ -1,5 +1,9 @@
 #include "vigia/core/output_folder.hpp"
 
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+
 #include <unistd.h>
 
 #include "vigia/core/error.hpp"
@@ -7,14 +11,38 @@
 
 namespace vigia {
 namespace fs = std::filesystem;
+namespace {
+
+/// Whether the process has ended; also false where nobody may tell.
+bool has_ended(pid_t process) {
+  return ::kill(process, 0) != 0 && errno == ESRCH;
+}
+
+/// Removes what processes that were killed had begun under this prefix and their number.
+void remove_abandoned(const fs::path& beside, const std::string& prefix) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(beside, error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.compare(0, prefix.size(), prefix) != 0) continue;
+    const std::string number = name.substr(prefix.size());
+    if (number.empty() || number.size() > 9) continue;
+    if (number.find_first_not_of("0123456789") != std::string::npos) continue;
+    std::error_code ignored;
+    if (has_ended(static_cast<pid_t>(std::atoi(number.c_str()))))
+      fs::remove_all(entry.path(), ignored);
+  }
+}
+
+}  // namespace
 
 OutputFolder::OutputFolder(const fs::path& folder, std::string mark) : mark_(std::move(mark)) {
   if (folder.empty()) throw InputError("the output folder's name is empty");
   folder_ = fs::absolute(folder).lexically_normal();
   if (!folder_.has_filename()) folder_ = folder_.parent_path();
   check_replaceable();
-  staging_ = folder_.parent_path() /
-             ("." + folder_.filename().string() + ".part-" + std::to_string(::getpid()));
+  const std::string prefix = "." + folder_.filename().string() + ".part-";
+  remove_abandoned(folder_.parent_path(), prefix);
+  staging_ = folder_.parent_path() / (prefix + std::to_string(::getpid()));
   std::error_code error;
   fs::remove_all(staging_, error);
   fs::create_directories(staging_, error);

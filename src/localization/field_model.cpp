@@ -82,6 +82,23 @@ double density_on_lines(const FieldDistance& distance, const PlacedPoint& point,
   return density;
 }
 
+/// The logarithm of a product of many factors ≥ 1, with few logarithms taken.
+class LogProduct {
+ public:
+  void multiply(double factor) {
+    product_ *= factor;
+    if (product_ < kLarge) return;
+    log_ += std::log(product_);
+    product_ = 1.0;
+  }
+  double log() const { return log_ + std::log(product_); }
+
+ private:
+  static constexpr double kLarge = 1e150;
+  double product_ = 1.0;
+  double log_ = 0.0;
+};
+
 /// Adds one point to the sums: the mixture's gradient, and its information by Louis' identity,
 /// complete minus the variance of the score over the mixture.
 void add_point(const FieldDistance& distance, const PlacedPoint& placed,
@@ -190,26 +207,28 @@ double FieldModel::line_evidence(const std::vector<FieldPoint>& points,
   const Turn turn(pose);
   const double c = clutter_density(clutter);
   const double floor_variance = params_.floor_m * params_.floor_m;
-  std::vector<double> gain;
+  std::vector<double> gain;  // per point, density on lines or clutter over that of clutter
   gain.reserve(points.size());
   for (const FieldPoint& point : points)
-    gain.push_back(std::log1p(density_on_lines(distance_, placed_at(point, turn), floor_variance) /
-                              (c * point.p_r.norm())));
+    gain.push_back(1.0 + density_on_lines(distance_, placed_at(point, turn), floor_variance) /
+                             (c * point.p_r.norm()));
   double sum = 0.0;
   for (const StraightGroup& group : groups) {
-    double by_map = 0.0;
-    double by_itself = -params_.line_price;
+    LogProduct by_map;
+    LogProduct by_itself;
     for (std::size_t k = 0; k < group.points.size(); ++k) {
       const std::size_t i = group.points[k];
-      by_map += gain[i];
-      by_itself += std::log1p(group.line_densities[k] / (c * points[i].p_r.norm()));
-      gain[i] = 0.0;
+      by_map.multiply(gain[i]);
+      by_itself.multiply(1.0 + group.line_densities[k] / (c * points[i].p_r.norm()));
+      gain[i] = 1.0;
     }
-    const double higher = std::max(by_map, by_itself);
-    sum += higher + std::log1p(std::exp(std::min(by_map, by_itself) - higher));
+    const double map = by_map.log();
+    const double itself = by_itself.log() - params_.line_price;
+    sum += std::max(map, itself) + std::log1p(std::exp(-std::abs(map - itself)));
   }
-  for (const double alone : gain) sum += alone;
-  return sum;
+  LogProduct alone;
+  for (const double factor : gain) alone.multiply(factor);
+  return sum + alone.log();
 }
 
 FieldLinearisation FieldModel::linearise(const std::vector<FieldPoint>& points, const Pose2& pose,

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include "vigia/localization/chi_square.hpp"
@@ -17,6 +18,16 @@ constexpr int kMaxSteps = 20;
 /// A fit less likely than this is none. Far out: the right pose must not drop out by bad luck and
 /// leave the field to a wrong one, and two discs in one look share an error that counts twice here.
 constexpr double kImpossible = 1e-6;
+/// How far off place() may put a disc: so much, and a share of the range. Sizes off the optical
+/// axis overstate the range by up to a tenth.
+constexpr double kPlaceTolerance_m = 0.1;
+constexpr double kPlaceToleranceShare = 0.12;
+/// Pairs are made of so many sightings, the largest in the image, whose ranges are the best.
+constexpr std::size_t kPairedSightings = 10;
+/// So many seeds are all tried in full; of more, as many as kChosenSeeds that the sightings support
+/// best and that stand apart.
+constexpr std::size_t kMaxSeeds = 600;
+constexpr std::size_t kChosenSeeds = 60;
 /// A start covariance wide enough to take in every landmark that a closed-form pose may mean.
 const Eigen::Vector3d kSeedSigma(0.3, 0.3, from_deg(4.0));
 
@@ -76,6 +87,14 @@ MeasurementParams measurement_params(const RelocalizerParams& params) {
   return measurement;
 }
 
+std::vector<EllipseObservation> largest(std::vector<EllipseObservation> sightings) {
+  if (sightings.size() <= kPairedSightings) return sightings;
+  std::stable_sort(sightings.begin(), sightings.end(),
+                   [](const auto& a, const auto& b) { return a.ellipse.a > b.ellipse.a; });
+  sightings.resize(kPairedSightings);
+  return sightings;
+}
+
 bool same_place(const Pose2& a, const Pose2& b) {
   const Eigen::Vector3d apart = difference(a, b);
   return apart.head<2>().norm() < 0.1 && std::abs(apart.z()) < from_deg(2.0);
@@ -127,8 +146,9 @@ Relocalization Relocalizer::solve(const Sweep& sweep, const std::optional<Prior>
   return result;
 }
 
-std::vector<Pose2> Relocalizer::seeds(const std::vector<EllipseObservation>& sightings,
+std::vector<Pose2> Relocalizer::seeds(const std::vector<EllipseObservation>& all,
                                       const std::optional<Prior>& prior) const {
+  const std::vector<EllipseObservation> sightings = largest(all);
   std::vector<Pose2> poses;
   if (prior) poses.push_back(prior->pose);
   for (std::size_t i = 0; i < sightings.size(); ++i) {
@@ -140,15 +160,66 @@ std::vector<Pose2> Relocalizer::seeds(const std::vector<EllipseObservation>& sig
           const Eigen::Vector2d q_j = place(sightings[j], *disc_radius(l), model_.on_ground());
           const Eigen::Vector2d p_k = k.centre_w().head<2>();
           const Eigen::Vector2d p_l = l.centre_w().head<2>();
-          // Sizes off the optical axis overstate the range by up to a tenth.
-          const double tolerance = 0.1 + 0.12 * (q_i.norm() + q_j.norm());
+          const double tolerance =
+              kPlaceTolerance_m + kPlaceToleranceShare * (q_i.norm() + q_j.norm());
           if (std::abs((q_j - q_i).norm() - (p_l - p_k).norm()) < tolerance)
             poses.push_back(align(q_i, q_j, p_k, p_l));
         }
       }
     }
   }
-  return poses;
+  return best_supported(std::move(poses), all);
+}
+
+/// Pairs that fit in distance alone grow with the square of sightings and of landmarks; a look at
+/// where the other sightings stand from there sorts most of them out.
+std::vector<Pose2> Relocalizer::best_supported(
+    std::vector<Pose2> poses, const std::vector<EllipseObservation>& sightings) const {
+  if (poses.size() <= kMaxSeeds) return poses;
+  const std::vector<DiscPlace> places = possible_places(sightings);
+  std::vector<std::pair<int, std::size_t>> order;
+  order.reserve(poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    order.emplace_back(-supporters(poses[i], places), i);
+  std::sort(order.begin(), order.end());
+  std::vector<Pose2> chosen;
+  for (const auto& [support, i] : order) {
+    const Pose2& pose = poses[i];
+    const bool known = std::any_of(chosen.begin(), chosen.end(),
+                                   [&](const Pose2& other) { return same_place(other, pose); });
+    if (!known) chosen.push_back(pose);
+    if (chosen.size() == kChosenSeeds) break;
+  }
+  return chosen;
+}
+
+std::vector<Relocalizer::DiscPlace> Relocalizer::possible_places(
+    const std::vector<EllipseObservation>& sightings) const {
+  std::vector<DiscPlace> places;
+  for (std::size_t i = 0; i < sightings.size(); ++i) {
+    for (const Landmark& landmark : model_.map().all()) {
+      if (const auto radius = disc_radius(landmark))
+        places.push_back(
+            {i, place(sightings[i], *radius, model_.on_ground()), landmark.centre_w().head<2>()});
+    }
+  }
+  return places;
+}
+
+int Relocalizer::supporters(const Pose2& pose, const std::vector<DiscPlace>& places) {
+  const Eigen::Matrix2d turn = Eigen::Rotation2Dd(pose.theta).toRotationMatrix();
+  constexpr auto kNone = static_cast<std::size_t>(-1);
+  std::size_t counted = kNone;
+  int count = 0;
+  for (const DiscPlace& at : places) {
+    if (at.sighting == counted) continue;
+    const double tolerance = kPlaceTolerance_m + kPlaceToleranceShare * at.p_r.norm();
+    const Eigen::Vector2d off = pose.position() + turn * at.p_r - at.landmark_w;
+    if (off.squaredNorm() > tolerance * tolerance) continue;
+    counted = at.sighting;
+    ++count;
+  }
+  return count;
 }
 
 /// What a sighting of the landmark says about the pose, the biases of its look at zero.

@@ -128,6 +128,14 @@ TEST(SetConfig, MakesTheMapsOnItsWay) {
   EXPECT_EQ(dump_config(*root), "version: 1\nnull_map:\n  x: 1\na:\n  b:\n    c: [1, 2]\n");
 }
 
+TEST(SetConfig, TakesAKeyAwayByNull) {
+  const auto root = parse_config("version: 1\na: {b: 1, c: {d: 2}}\n", "x.yaml");
+  set_config(*root, "a.c=null");
+  EXPECT_EQ(dump_config(*root), "version: 1\na:\n  b: 1\n");
+  EXPECT_THAT(input_error([&] { set_config(*root, "a.c=null"); }),
+              HasSubstr("--set a.c=null: 'c' is not there to be removed"));
+}
+
 TEST_F(SetConfigFiles, StepsIntoTheFileThatAValueNames) {
   write("robots/r.yaml", "version: 1\nhead: {rate: 1}\nname: r\n");
   const auto root = load_config(write("missions/m.yaml", "version: 1\nrobot: ../robots/r.yaml\n"));

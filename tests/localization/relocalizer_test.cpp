@@ -129,6 +129,37 @@ TEST(Relocalizer, IsNotMisledByDiscsThatAreNoLandmarks) {
   EXPECT_LE(counts.wrong, 0.01 * kPoses);
 }
 
+/// @p count discs on the four walls of a room of 12 × 7 m, at random places and heights.
+LandmarkMap crowded_walls(int count, RandomStream& random) {
+  std::vector<Landmark> discs;
+  for (int i = 0; i < count; ++i) {
+    const double height = random.uniform(1.0, 2.2);
+    const double x = random.uniform(0.4, 11.6);
+    const double y = random.uniform(0.4, 6.6);
+    if (i % 4 == 0) discs.push_back(test::disc(i + 1, x, 0.0, height, 90.0));
+    if (i % 4 == 1) discs.push_back(test::disc(i + 1, x, 7.0, height, -90.0));
+    if (i % 4 == 2) discs.push_back(test::disc(i + 1, 0.0, y, height, 0.0));
+    if (i % 4 == 3) discs.push_back(test::disc(i + 1, 12.0, y, height, 180.0));
+  }
+  return LandmarkMap(discs);
+}
+
+TEST(Relocalizer, IsSoonDoneInARoomOfFiftyDiscs) {
+  RandomStream random(4, "crowded");
+  int right = 0;
+  constexpr int kPoses = 4;
+  for (int i = 0; i < kPoses; ++i) {
+    SweepMaker make_sweep;
+    make_sweep.plan = FloorPlan({{0.0, 0.0}, {12.0, 0.0}, {12.0, 7.0}, {0.0, 7.0}}, 2.8, {}, {});
+    make_sweep.map = crowded_walls(50, random);
+    const Pose2 truth = random_pose(make_sweep.plan, random);
+    const Relocalization result = relocalizer_for(make_sweep).solve(make_sweep(truth, random));
+    if (result.status == RelocalizationStatus::found)
+      right += is_near(result.hypotheses.front().pose, truth) ? 1 : -kPoses;
+  }
+  EXPECT_EQ(right, kPoses);
+}
+
 TEST(Relocalizer, SaysAmbiguousInARoomThatLooksTheSameFromTwoPlaces) {
   SweepMaker make_sweep;
   make_sweep.map =

@@ -21,6 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 const std::string kMission = std::string(VIGIA_SOURCE_DIR) + "/config/missions/armingol-room.yaml";
 
@@ -250,6 +251,32 @@ TEST_F(Program, LeavesNothingBehindOnAFullDisk) {
   EXPECT_EQ(result.status, 2) << result.err;
   EXPECT_THAT(result.err, HasSubstr("No space left on device"));
   EXPECT_EQ(result.out, "");
+}
+
+TEST_F(Program, LeavesNothingBehindWhenItIsInterrupted) {
+  const std::string out = (dir_.path() / "run").string();
+  const std::string drive =
+      std::string(VIGIA_PROGRAM) + " run " + kMission + " --quiet --out " + out;
+  // Once the folder aside is there, the mission has begun.
+  const auto script = file("script", drive + " & while ! ls -d " + dir_.path().string() +
+                                         "/.run.part-* >/dev/null 2>&1; do sleep 0.01; done\n" +
+                                         "kill -TERM $!; wait $!\n");
+  const auto result = vigia::testing::run_process("sh " + script.string(), dir_.path());
+  EXPECT_EQ(result.status, 130) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("interrupted at t = "));
+  EXPECT_THAT(vigia::testing::run_process("ls -A " + dir_.path().string(), dir_.path()).out,
+              Not(HasSubstr("run")));
+}
+
+TEST_F(Program, RemovesWhatAKilledRunOfTheSameFolderLeft) {
+  const auto ended = vigia::testing::run_process("sh -c 'echo $$'", dir_.path()).out;
+  const std::string left = ".run.part-" + ended.substr(0, ended.find('\n'));
+  const std::string living = ".run.part-" + std::to_string(::getpid());
+  for (const std::string& name : {left, living}) fs::create_directory(dir_.path() / name);
+  file(left + "/ticks.csv", "t_s");
+  EXPECT_EQ(vigia(short_run(dir_.path() / "run")).status, 1);
+  EXPECT_FALSE(fs::exists(dir_.path() / left));
+  EXPECT_TRUE(fs::exists(dir_.path() / living));
 }
 
 TEST_F(Program, NamesTheKeyOfAWrongOverride) {

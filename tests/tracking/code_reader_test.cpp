@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -98,10 +99,34 @@ TEST(CodeReader, RingsThatDisagreeAreDoubtful) {
 
 TEST(CodeReader, AColourBetweenTwoIsDoubtfulAndItsConfidenceLow) {
   DotLevels dots = pattern_levels(kShown, {1.0, 1.0}, 1.0);
-  dots[2] = dots[2 + kDotsPerRing] = seen({0.5, 0.08, 0.47}, 1.0, 1.0);
-  const CodeReading reading = read_code(dots, kMinConfidence);
-  EXPECT_EQ(reading.status, ReadStatus::doubtful);
-  EXPECT_LT(reading.confidence, 0.9);
+  // Red's and blue's least channels are 0.3 apart: 0.03 is a tenth of it, 0.01 next to nothing.
+  for (const auto& [blue, most] : {std::pair{0.47, kMinConfidence}, {0.49, 0.9}}) {
+    dots[2] = dots[2 + kDotsPerRing] = seen({0.5, 0.08, blue}, 1.0, 1.0);
+    const CodeReading reading = read_code(dots, kMinConfidence);
+    EXPECT_EQ(reading.status, ReadStatus::doubtful);
+    EXPECT_LT(reading.confidence, most);
+  }
+}
+
+TEST(CodeReader, DarkGreenIsNeitherBlackNorBlue) {
+  // Of what a small picture's mosaic and compression leave: green absorbs 0.8 of red's share of
+  // blue, and 0.69 of green.
+  InkTable inks = kInks;
+  inks[static_cast<std::size_t>(DotColour::green)] = {0.10, 0.38, 0.26};
+  for (const int floor : {1, 7}) {  // a black centre, a green one
+    const PatternCode code{floor, 42, 5};
+    const CodeReading reading =
+        read_code(pattern_levels(code, {1.0, 1.0}, 1.0, inks), kMinConfidence);
+    ASSERT_EQ(reading.status, ReadStatus::read) << floor;
+    EXPECT_EQ(reading.code, code);
+  }
+}
+
+TEST(CodeReader, TwinsThatDifferLowerTheConfidence) {
+  DotLevels alike = pattern_levels(kShown, {1.0, 1.0}, 1.0);
+  DotLevels different = alike;
+  for (std::size_t i = 1; i <= kDotsPerRing; ++i) different[i]->dot[1] += i % 2 == 0 ? 25.0 : -25.0;
+  EXPECT_LT(read_code(different, 0.0).confidence, read_code(alike, 0.0).confidence);
 }
 
 TEST(CodeReader, DotsThatBlurHasAllButWipedOutAreDoubtful) {

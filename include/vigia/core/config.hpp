@@ -46,7 +46,7 @@ std::shared_ptr<ConfigNode> parse_config(const std::string& text, const std::str
 
 /// Sets a value at a dotted path as `--set a.b=value` does; the value is YAML. Maps on the way are
 /// made; the name of a YAML file on the way is replaced by its content; a list or another scalar on
-/// the way is an error.
+/// the way is an error. `a.b=null` removes the key, which must be there.
 void set_config(ConfigNode& root, const std::string& assignment);
 
 /// Writes the tree as YAML with `version: 1`; read back, it gives the same tree.

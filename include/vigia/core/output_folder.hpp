@@ -9,7 +9,8 @@ namespace vigia {
 /// A folder that is built aside (a hidden sibling) and takes its name in commit(). An earlier
 /// folder of that name is replaced then and not before, and only when it is empty or holds the file
 /// @p mark, which tells what this program made from what it must not touch. Destroyed without
-/// commit() nothing stays. Every failure is an InputError that names the folder.
+/// commit() nothing stays; what a killed process left is removed by the next that makes the same
+/// folder. Every failure is an InputError that names the folder.
 class OutputFolder {
  public:
   OutputFolder(const std::filesystem::path& folder, std::string mark);

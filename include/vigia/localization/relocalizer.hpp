@@ -87,8 +87,19 @@ class Relocalizer {
     double log_weight = 0.0;
   };
 
-  std::vector<Pose2> seeds(const std::vector<EllipseObservation>& sightings,
+  std::vector<Pose2> seeds(const std::vector<EllipseObservation>& all,
                            const std::optional<Prior>& prior) const;
+  /// Where a sighting stands in the base frame if it is that landmark.
+  struct DiscPlace {
+    std::size_t sighting;
+    Eigen::Vector2d p_r;
+    Eigen::Vector2d landmark_w;
+  };
+  std::vector<DiscPlace> possible_places(const std::vector<EllipseObservation>& sightings) const;
+  std::vector<Pose2> best_supported(std::vector<Pose2> poses,
+                                    const std::vector<EllipseObservation>& sightings) const;
+  /// How many sightings stand about where a landmark is, by the order of @p places.
+  static int supporters(const Pose2& pose, const std::vector<DiscPlace>& places);
   std::optional<Fit> refine(const Pose2& start, const std::vector<Sighting>& matches,
                             const std::optional<Prior>& prior) const;
   std::vector<Sighting> explain(const Fit& fit,
