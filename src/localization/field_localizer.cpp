@@ -13,14 +13,20 @@ constexpr double kRemembered_s = 1.0;
 template <typename Method>
 class FieldLocalizerOf final : public FieldLocalizer {
  public:
-  template <typename... Args>
-  FieldLocalizerOf(std::string_view name, const FieldMap& field, const Args&... args)
-      : name_(name), model_(std::make_unique<const FieldModel>(field)), method_(*model_, args...) {}
+  template <typename Params, typename... Args>
+  FieldLocalizerOf(std::string_view name, const FieldMap& field,
+                   const std::optional<MirrorOfRig>& mirror, const Params& params,
+                   const Args&... args)
+      : name_(name),
+        model_(std::make_unique<const FieldModel>(field)),
+        method_(*model_, params, args...) {
+    if (mirror) calibrate(*model_, *mirror, params.odometry);
+  }
 
   std::string_view name() const override { return name_; }
-  const Belief& belief() const override { return method_.belief(); }
 
  private:
+  const Belief& own_belief() const override { return method_.belief(); }
   void start(Stamp stamp, const std::optional<Prior>& prior) override {
     method_.reset(stamp, prior);
   }
@@ -34,9 +40,17 @@ class FieldLocalizerOf final : public FieldLocalizer {
 
 }  // namespace
 
+void FieldLocalizer::calibrate(const FieldModel& model, const MirrorOfRig& mirror,
+                               const OdometryNoise& odometry) {
+  mirror_ = mirror;
+  calibration_.emplace(model, mirror.errors, odometry);
+}
+
 void FieldLocalizer::reset(Stamp stamp, const std::optional<Prior>& prior) {
   places_.assign(1, {stamp, {}});
   start(stamp, prior);
+  if (calibration_) calibration_->lose_place();
+  refresh();
 }
 
 void FieldLocalizer::predict(const OdometryIncrement& increment) {
@@ -44,6 +58,8 @@ void FieldLocalizer::predict(const OdometryIncrement& increment) {
   const Stamp oldest = increment.to - Duration::from_seconds(kRemembered_s);
   while (places_.front().stamp < oldest) places_.pop_front();
   move_by(increment);
+  if (calibration_) calibration_->predict(increment);
+  refresh();
 }
 
 UpdateResult FieldLocalizer::update(const Observation& observation) {
@@ -59,29 +75,59 @@ UpdateResult FieldLocalizer::update(const Observation& observation) {
   // The last place at or before the exposure: exposures are in ticks.
   const auto after = std::find_if(places_.begin(), places_.end(),
                                   [&](const Place& place) { return exposed < place.stamp; });
-  const Pose2 now_from_then = compose(inverse(now.oMr), std::prev(after)->oMr);
-  take(exposed < now.stamp ? carried(seen->scan, now_from_then, now.stamp) : seen->scan);
+  process(*seen, compose(inverse(now.oMr), std::prev(after)->oMr));
+  refresh();
   result.status = UpdateStatus::fused;
   return result;
 }
 
+/// Takes the scan as the robot would have made it now.
+void FieldLocalizer::process(const FieldObservation& seen, const Pose2& now_from_then) {
+  const Stamp now = places_.back().stamp;
+  const bool late = seen.scan.stamp < now;
+  const auto* mirror = std::get_if<UnifiedOmni>(&seen.shot.model);
+  if (!calibration_ || mirror == nullptr) {
+    take(late ? carried(seen.scan, now_from_then, now) : seen.scan);
+    return;
+  }
+  const MirrorOnRobot camera{*mirror, mirror_->rig.at(seen.shot.camera).rMc(seen.shot.head)};
+  CorrectedScan scan = calibration_->corrected(seen.scan, camera);
+  if (late) scan = carried(scan, now_from_then, now);
+  take(scan.scan);
+  calibration_->update(scan, own_belief());
+}
+
 void FieldLocalizer::lose() {
   start(places_.back().stamp, std::nullopt);
+  if (calibration_) calibration_->lose_place();
+  refresh();
+}
+
+/// The belief, and what is not known of the mirror.
+void FieldLocalizer::refresh() {
+  belief_ = own_belief();
+  if (!calibration_) return;
+  belief_.covariance += calibration_->widening();
+  for (PoseHypothesis& hypothesis : belief_.hypotheses)
+    hypothesis.covariance += calibration_->widening();
 }
 
 std::unique_ptr<FieldLocalizer> make_field_tracker(const FieldMap& field,
-                                                   const FieldTrackerParams& params) {
-  return std::make_unique<FieldLocalizerOf<FieldTracker>>("field_grid", field, params);
+                                                   const FieldTrackerParams& params,
+                                                   const std::optional<MirrorOfRig>& mirror) {
+  return std::make_unique<FieldLocalizerOf<FieldTracker>>("field_grid", field, mirror, params);
 }
 
 std::unique_ptr<FieldLocalizer> make_mcl(const FieldMap& field, const MclParams& params,
-                                         std::uint64_t seed) {
-  return std::make_unique<FieldLocalizerOf<Mcl>>("mcl", field, params, seed);
+                                         std::uint64_t seed,
+                                         const std::optional<MirrorOfRig>& mirror) {
+  return std::make_unique<FieldLocalizerOf<Mcl>>("mcl", field, mirror, params, seed);
 }
 
 std::unique_ptr<FieldLocalizer> make_murea(const FieldMap& field,
-                                           const MureaLocalizerParams& params) {
-  return std::make_unique<FieldLocalizerOf<MureaLocalizer>>("murea", field, params);
+                                           const MureaLocalizerParams& params,
+                                           const std::optional<MirrorOfRig>& mirror) {
+  return std::make_unique<FieldLocalizerOf<MureaLocalizer>>("murea", field, mirror, params);
 }
 
 }  // namespace vigia::localization

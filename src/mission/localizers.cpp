@@ -48,23 +48,29 @@ LocalizerPtr make_pattern_fix(const MissionSetup& setup, std::uint64_t /*seed*/)
       setup.world.landmarks, setup.on_ground(), pattern_fix_params(setup));
 }
 
+/// The calibration of a robot's mirror is never quite right: its errors are estimated.
+localization::MirrorOfRig mirror_of(const MissionSetup& setup) {
+  return {setup.robot.rig(), {}};
+}
+
 LocalizerPtr make_field_grid(const MissionSetup& setup, std::uint64_t /*seed*/) {
   localization::FieldTrackerParams params;
   params.odometry = setup.noise.odometry;
-  return localization::make_field_tracker(setup.world.field.value_or(FieldMap{}), params);
+  return localization::make_field_tracker(setup.world.field.value_or(FieldMap{}), params,
+                                          mirror_of(setup));
 }
 
 LocalizerPtr make_mcl(const MissionSetup& setup, std::uint64_t seed) {
   localization::MclParams params;
   params.odometry = setup.noise.odometry;
   return localization::make_mcl(setup.world.field.value_or(FieldMap{}), params,
-                                derive_seed(seed, "mcl"));
+                                derive_seed(seed, "mcl"), mirror_of(setup));
 }
 
 LocalizerPtr make_murea(const MissionSetup& setup, std::uint64_t /*seed*/) {
   localization::MureaLocalizerParams params;
   params.odometry = setup.noise.odometry;
-  return localization::make_murea(setup.world.field.value_or(FieldMap{}), params);
+  return localization::make_murea(setup.world.field.value_or(FieldMap{}), params, mirror_of(setup));
 }
 
 LocalizerPtr make_bearing_only(const MissionSetup& setup, std::uint64_t /*seed*/) {

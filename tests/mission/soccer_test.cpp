@@ -16,16 +16,17 @@ TEST(SoccerMission, EveryLocalizerKnowsItsPlaceByTheMirrorsPicturesAlone) {
   evaluation::DriveScorer scorer;
   run_mission(load_mission(kMissions + "soccer.yaml", {"timeout_s=4"}), 1, {&scorer});
   const auto& localizers = scorer.score().localizers;
-  // Over a minute 0.3 mm, 0.3 mm and 1.4 cm.
+  // With the first scan, before which the mirror's errors are not known at all, 2 mm, 2 mm and 1.4
+  // cm.
   const std::map<std::string, double> most_m{
-      {"field_grid", 0.002}, {"mcl", 0.002}, {"murea", 0.04}};
+      {"field_grid", 0.006}, {"mcl", 0.006}, {"murea", 0.04}};
   for (const auto& [name, most] : most_m) {
     EXPECT_LT(localizers.at(name).position_rmse_m, most) << name;
     EXPECT_GT(localizers.at(name).updates, 80) << name;
     EXPECT_EQ(localizers.at(name).unsupported, 0) << name;
   }
   EXPECT_GT(localizers.at("field_grid").pcrlb_position_rms_m, 0.0001);
-  EXPECT_LT(localizers.at("field_grid").pcrlb_position_rms_m, 0.002);
+  EXPECT_LT(localizers.at("field_grid").pcrlb_position_rms_m, 0.01);
 }
 
 TEST(SoccerMission, EveryFieldsMissionCanBeRead) {
