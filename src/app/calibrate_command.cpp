@@ -1,6 +1,7 @@
 #include "commands.hpp"
 #include "mirror_option.hpp"
 #include "mirror_pictures.hpp"
+#include "usage_mistake.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -346,8 +347,9 @@ void add_start(CLI::App& command, CalibrateOptions& options) {
   command
       .add_option("--free", options.free,
                   "What is estimated beside focal length, middle and tilt: xi, height")
-      ->check(CLI::IsMember({"xi", "height"}))
-      ->delimiter(',');
+      ->check(one_of({"xi", "height"}))
+      ->delimiter(',')
+      ->allow_extra_args(false);
 }
 
 }  // namespace

@@ -325,8 +325,9 @@ void describe_residuals(const std::vector<MirrorPicture>& pictures, const Mirror
   for (std::size_t i = 0; i < pictures.size(); ++i)
     out.pictures[i].rms_px = std::sqrt(squares_px[i] / std::max(1, out.pictures[i].points_on()));
   const auto count = static_cast<double>(points.size());
-  const double free = count - 5.0 - 3.0 * static_cast<double>(pictures.size());
-  out.misfit = chi2 / std::max(1.0, free);
+  const auto used = static_cast<double>(std::count(fit.used.begin(), fit.used.end(), true));
+  const double freedom = count - 5.0 - 3.0 * used;
+  out.misfit = chi2 / std::max(1.0, freedom);
   out.rms_px =
       std::sqrt(std::accumulate(squares_px.begin(), squares_px.end(), 0.0) / std::max(1.0, count));
 }

@@ -18,6 +18,7 @@
 #include "vigia/localization/mirror_calibration.hpp"
 #include "vigia/sim/camera_errors.hpp"
 #include "vigia/sim/scene.hpp"
+#include "vigia/sim/simulator.hpp"
 #include "vigia/tracking/radial_scan.hpp"
 
 namespace vigia {
@@ -47,6 +48,7 @@ class MirrorInTheHall {
 
   const FieldMap& field() const { return *world_.field; }
   const localization::MirrorMount& known() const { return known_; }
+  const localization::MirrorMount& truth() const { return true_; }
 
   std::unique_ptr<imaging::Frame> expose(const Pose2& pose, int number) const {
     sim::ImagingParams params;
@@ -173,6 +175,17 @@ TEST_F(CalibrateCommand, WritesWhatTheMirrorTrulyIs) {
   for (const char* name : {"calibration.csv", "covariance.csv", "distance.csv", "pictures.csv",
                            "camera.yaml", "overlay/00001_m0.png"})
     EXPECT_TRUE(std::filesystem::exists(folder_.path() / "out" / name)) << name;
+  // The camera as a robot file has it.
+  MapReader reader(load_config(folder_.path() / "out" / "camera.yaml"), "robot");
+  const Rig rig = sim::read_robot_setup(reader).rig();
+  reader.finish();
+  const Camera& camera = rig.cameras.front();
+  const auto& mirror = std::get<UnifiedOmni>(std::get<CameraModel>(camera.optics));
+  EXPECT_NEAR(mirror.px, rows["focal_px"][1], 1e-3);
+  EXPECT_NEAR(mirror.py, -rows["focal_px"][1], 1e-3);
+  const Eigen::Isometry3d rMc = std::get<FixedMount>(camera.mount).rMc;
+  EXPECT_LT(Eigen::AngleAxisd(rMc.linear().transpose() * hall.truth().rMc.linear()).angle(),
+            4.0 * from_deg(std::hypot(rows["tilt_x_deg"][2], rows["tilt_y_deg"][2])));
 }
 
 TEST_F(CalibrateCommand, SaysWhatIsWrongWithItsInput) {
