@@ -1,11 +1,10 @@
 #include "commands.hpp"
 #include "interrupt.hpp"
+#include "mirror_option.hpp"
 #include "track_run.hpp"
 #include "usage_mistake.hpp"
 
-#include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -126,24 +125,6 @@ std::vector<tracking::LandmarkCode> parse_codes(const TrackOptions& options) {
 
 bool scans_field(const TrackOptions& options) {
   return options.tracker == "field_scan";
-}
-
-/// U,V,INNER,OUTER in pixels.
-std::optional<tracking::MirrorImage> parse_mirror(const std::string& text) {
-  if (text.empty()) return std::nullopt;
-  std::vector<double> numbers;
-  std::istringstream list(text);
-  for (std::string field; std::getline(list, field, ',');) {
-    const auto number = parsed<double>(field);
-    if (number && std::isfinite(*number)) numbers.push_back(*number);
-  }
-  const bool four = numbers.size() == 4 && std::count(text.begin(), text.end(), ',') == 3;
-  if (!four || !(numbers[2] >= 0.0) || !(numbers[3] > numbers[2]) || !(numbers[3] <= 1e5))
-    throw InputError(
-        fmt::format("--mirror: found '{}', must be U,V,INNER,OUTER, in pixels, with "
-                    "0 ≤ INNER < OUTER ≤ 100000",
-                    text));
-  return tracking::MirrorImage{{numbers[0], numbers[1]}, numbers[2], numbers[3]};
 }
 
 tracking::FieldPictureParams make_field_scan(const TrackOptions& options) {

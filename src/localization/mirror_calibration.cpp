@@ -2,242 +2,418 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <cstdint>
+#include <numeric>
 
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
+#include <Eigen/Dense>
 
-#include "vigia/core/angle.hpp"
-#include "vigia/localization/normal_density.hpp"
+#include "vigia/localization/field_match.hpp"
 
 namespace vigia::localization {
 namespace {
 
-using Eigen::Matrix2d;
-using Eigen::Vector2d;
-using Eigen::Vector3d;
-using ErrorCovariance = Eigen::Matrix<double, kMirrorErrors, kMirrorErrors>;
-using PoseByErrors = Eigen::Matrix<double, 3, kMirrorErrors>;
+constexpr auto kFirstPose = static_cast<Eigen::Index>(kMirrorParameters);
 
-enum MirrorError { kScale, kTiltX, kTiltY, kCentreU, kCentreV };
+/// Steps of the central differences: of each parameter's change, and of x, y, θ.
+constexpr std::array<double, kMirrorParameters> kMirrorSteps{1e-5, 1e-3, 1e-3, 1e-6,
+                                                             1e-6, 1e-5, 1e-5};
+constexpr double kPoseStep = 1e-6;
 
-constexpr double kOfLineSigmas = 3.0;   // a point farther off is on no line
-constexpr double kOtherLine = 0.02;     // density of another line beside the best, at most
-constexpr std::size_t kFewestRows = 8;  // points that teach anything about the mirror
-constexpr int kCalibrationSteps = 3;
-constexpr double kElsewhere_m = 0.25;  // between the filter's place and the localizer's
-constexpr double kElsewhereTurn = 0.1;
-
-MirrorErrors initial_sigmas(const MirrorErrorParams& params) {
-  MirrorErrors sigmas;
-  sigmas << params.scale, params.tilt, params.tilt, params.centre_px, params.centre_px;
-  return sigmas;
+std::optional<Eigen::Vector2d> on_floor(const MirrorMount& mount, const Eigen::Vector2d& uv) {
+  constexpr double kShallow = 1e-3;  // rad below the horizon
+  const auto direction_c = ray(mount.mirror, uv);
+  if (!direction_c) return std::nullopt;
+  const Eigen::Vector3d direction_r = mount.rMc.linear() * *direction_c;
+  if (direction_r.z() > -kShallow) return std::nullopt;
+  const Eigen::Vector3d& eye_r = mount.rMc.translation();
+  return (eye_r - direction_r * (eye_r.z() / direction_r.z())).head<2>();
 }
 
-Matrix2d plane_rotation(double theta) {
-  return Eigen::Rotation2Dd(theta).toRotationMatrix();
+Eigen::Vector2d in_field(const Pose2& pose, const Eigen::Vector2d& p_r) {
+  return pose.position() + Eigen::Rotation2Dd(pose.theta) * p_r;
+}
+
+MirrorPoint moved_along_ray(const MirrorPoint& point, double by_px) {
+  const Eigen::Vector2d along = (point.outer_uv - point.inner_uv).normalized();
+  return {point.inner_uv + by_px * along, point.outer_uv + by_px * along, point.sigma_px};
+}
+
+/// ½ (d(p_inner) + d(p_outer)), m.
+std::optional<double> offset_from(const FieldLine& line, const MirrorPoint& point,
+                                  const MirrorMount& mount, const Pose2& pose) {
+  const auto inner = on_floor(mount, point.inner_uv);
+  const auto outer = on_floor(mount, point.outer_uv);
+  if (!inner || !outer) return std::nullopt;
+  return 0.5 * (line_offset(line, in_field(pose, *inner)).distance_m +
+                line_offset(line, in_field(pose, *outer)).distance_m);
+}
+
+/// How far a point lies off a line, and how far that may be by its own error.
+struct LineResidual {
+  double offset_m = 0.0;
+  double sigma_m = 1.0;
+  double whitened() const { return offset_m / sigma_m; }
+};
+
+std::optional<LineResidual> line_residual(const FieldLine& line, const MirrorPoint& point,
+                                          const MirrorMount& mount, const Pose2& pose) {
+  constexpr double kMapError_m = 0.0005;
+  const auto offset = offset_from(line, point, mount, pose);
+  const auto before = offset_from(line, moved_along_ray(point, -0.5), mount, pose);
+  const auto after = offset_from(line, moved_along_ray(point, 0.5), mount, pose);
+  if (!offset || !before || !after) return std::nullopt;
+  return LineResidual{*offset, std::hypot(point.sigma_px * (*after - *before), kMapError_m)};
+}
+
+/// A point and the line that it lies on.
+struct OnLine {
+  std::size_t picture = 0;
+  std::size_t point = 0;
+  std::size_t line = 0;
+  LineResidual residual;
+};
+
+/// The line that a point lies off by the fewest σ.
+std::optional<OnLine> nearest_line(const FieldMap& field, const MirrorPoint& point,
+                                   const MirrorMount& mount, const Pose2& pose) {
+  const auto middle = on_floor(mount, 0.5 * (point.inner_uv + point.outer_uv));
+  if (!middle) return std::nullopt;
+  const Eigen::Vector2d p_w = in_field(pose, *middle);
+  std::optional<OnLine> best;
+  for (std::size_t k = 0; k < field.lines.size(); ++k) {
+    const FieldLine& line = field.lines[k];
+    if (line_offset(line, p_w).inside_m < -0.5 * line.width_m) continue;
+    const auto residual = line_residual(line, point, mount, pose);
+    if (!residual) continue;
+    if (!best || std::abs(residual->whitened()) < std::abs(best->residual.whitened()))
+      best = OnLine{0, 0, k, *residual};
+  }
+  return best;
+}
+
+double calibration_median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The estimate while it is being found.
+class MirrorFit {
+ public:
+  MirrorFit(const FieldMap& field, const MirrorMount& start,
+            const std::vector<MirrorPicture>& pictures, const MirrorCalibrationParams& params)
+      : field_(field), start_(start), pictures_(pictures), params_(params) {
+    change.setZero();
+    used.assign(pictures.size(), true);
+  }
+
+  MirrorMount mount() const { return changed(start_, change); }
+
+  /// Each point of the pictures in use with its line; those beyond the gate are left out. The gate
+  /// is that of errors as large as the residuals' median says, where that is more than σ.
+  std::vector<OnLine> assigned() const {
+    constexpr double kMedianToSigma = 1.4826;
+    std::vector<OnLine> all;
+    std::vector<double> sizes;
+    const MirrorMount now = mount();
+    for (std::size_t i = 0; i < pictures_.size(); ++i)
+      for (std::size_t k = 0; used[i] && k < pictures_[i].points.size(); ++k)
+        if (auto found = nearest_line(field_, pictures_[i].points[k], now, poses[i])) {
+          found->picture = i;
+          found->point = k;
+          sizes.push_back(std::abs(found->residual.whitened()));
+          all.push_back(*found);
+        }
+    if (all.empty()) return all;
+    const double limit =
+        params_.gate * std::max(1.0, kMedianToSigma * calibration_median(std::move(sizes)));
+    all.erase(
+        std::remove_if(all.begin(), all.end(),
+                       [&](const OnLine& p) { return std::abs(p.residual.whitened()) > limit; }),
+        all.end());
+    return all;
+  }
+
+  Eigen::Index unknowns() const { return kFirstPose + 3 * static_cast<Eigen::Index>(poses.size()); }
+
+  /// Information of points and priors, and the gradient of minus the log-posterior.
+  void normal_equations(const std::vector<OnLine>& points, Eigen::MatrixXd& information,
+                        Eigen::VectorXd& gradient) const {
+    information = Eigen::MatrixXd::Zero(unknowns(), unknowns());
+    gradient = Eigen::VectorXd::Zero(unknowns());
+    add_priors(information, gradient);
+    for (const OnLine& at : points) {
+      const auto row = jacobian(at);
+      if (!row) continue;
+      const auto pose = kFirstPose + 3 * static_cast<Eigen::Index>(at.picture);
+      const double r = at.residual.whitened();
+      const MirrorVector by_mirror = row->head<kMirrorParameters>().transpose();
+      const Eigen::Vector3d by_pose = row->tail<3>().transpose();
+      information.topLeftCorner<kMirrorParameters, kMirrorParameters>() +=
+          by_mirror * by_mirror.transpose();
+      information.block<3, 3>(pose, pose) += by_pose * by_pose.transpose();
+      information.block<kMirrorParameters, 3>(0, pose) += by_mirror * by_pose.transpose();
+      information.block<3, kMirrorParameters>(pose, 0) += by_pose * by_mirror.transpose();
+      gradient.head<kMirrorParameters>() += by_mirror * r;
+      gradient.segment<3>(pose) += by_pose * r;
+    }
+  }
+
+  void step(const Eigen::VectorXd& by) {
+    change += by.head<kMirrorParameters>();
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      poses[i] = Pose2::from_vector(poses[i].vector() +
+                                    by.segment<3>(kFirstPose + 3 * static_cast<Eigen::Index>(i)));
+  }
+
+  MirrorVector change;
+  std::vector<Pose2> poses;
+  std::vector<bool> used;
+
+ private:
+  using Row = Eigen::Matrix<double, 1, static_cast<int>(kMirrorParameters) + 3>;
+
+  void add_priors(Eigen::MatrixXd& information, Eigen::VectorXd& gradient) const {
+    constexpr double kAnywhere_m = 10.0;
+    constexpr double kKnown = 1e12;
+    for (Eigen::Index k = 0; k < kFirstPose; ++k) {
+      const double sigma = params_.prior_sigma[static_cast<std::size_t>(k)];
+      const double weight = sigma > 0.0 ? 1.0 / (sigma * sigma) : kKnown;
+      information(k, k) += weight;
+      gradient(k) += weight * change(k);
+    }
+    // Keeps the heading over a target that is the same all round where it is.
+    for (Eigen::Index k = kFirstPose; k < unknowns(); ++k)
+      information(k, k) += 1.0 / (kAnywhere_m * kAnywhere_m);
+  }
+
+  /// ∂(offset/σ) by the mirror's parameters and the picture's x, y, θ, by central differences.
+  std::optional<Row> jacobian(const OnLine& at) const {
+    const MirrorPoint& point = pictures_[at.picture].points[at.point];
+    const FieldLine& line = field_.lines[at.line];
+    const Pose2& pose = poses[at.picture];
+    Row row = Row::Zero();
+    const auto take = [&](Eigen::Index k, double step, const std::optional<double>& after,
+                          const std::optional<double>& before) {
+      if (!after || !before) return false;
+      row(k) = (*after - *before) / (2.0 * step * at.residual.sigma_m);
+      return true;
+    };
+    for (std::size_t k = 0; k < kMirrorParameters; ++k) {
+      if (params_.prior_sigma[k] <= 0.0) continue;
+      const MirrorVector by = kMirrorSteps[k] * MirrorVector::Unit(static_cast<Eigen::Index>(k));
+      if (!take(static_cast<Eigen::Index>(k), kMirrorSteps[k],
+                offset_from(line, point, changed(start_, change + by), pose),
+                offset_from(line, point, changed(start_, change - by), pose)))
+        return std::nullopt;
+    }
+    const MirrorMount now = mount();
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      const Eigen::Vector3d by = kPoseStep * Eigen::Vector3d::Unit(k);
+      if (!take(kFirstPose + k, kPoseStep,
+                offset_from(line, point, now, Pose2::from_vector(pose.vector() + by)),
+                offset_from(line, point, now, Pose2::from_vector(pose.vector() - by))))
+        return std::nullopt;
+    }
+    return row;
+  }
+
+  const FieldMap& field_;
+  const MirrorMount& start_;
+  const std::vector<MirrorPicture>& pictures_;
+  const MirrorCalibrationParams& params_;
+};
+
+/// A picture's points on the floor by the mirror as it is known, with an error that leaves room for
+/// what is not.
+FieldScan rough_scan(const MirrorPicture& picture, const MirrorMount& mount) {
+  constexpr double kRoughly = 0.01;  // of the range
+  FieldScan scan;
+  for (const MirrorPoint& point : picture.points) {
+    const auto inner = on_floor(mount, point.inner_uv);
+    const auto outer = on_floor(mount, point.outer_uv);
+    if (!inner || !outer) continue;
+    FieldPoint on;
+    on.p_r = 0.5 * (*inner + *outer);
+    const double across = kRoughly * (mount.rMc.translation().z() + on.p_r.norm());
+    const double along =
+        point.sigma_px * (*outer - *inner).norm() / (point.outer_uv - point.inner_uv).norm();
+    const Eigen::Vector2d direction = on.p_r.normalized();
+    on.covariance = across * across * Eigen::Matrix2d::Identity() +
+                    along * along * direction * direction.transpose();
+    scan.points.push_back(on);
+  }
+  return scan;
+}
+
+/// Marks the pictures that have too few points, or none that match. Returns whether any is in use.
+bool place_pictures(const FieldMap& field, const MirrorMount& start,
+                    const std::vector<MirrorPicture>& pictures,
+                    const MirrorCalibrationParams& params, MirrorFit& fit) {
+  std::optional<FieldModel> model;
+  std::optional<FieldMatcher> matcher;
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const MirrorPicture& picture = pictures[i];
+    fit.poses.push_back(picture.near.value_or(Pose2{}));
+    fit.used[i] = static_cast<int>(picture.points.size()) >= params.min_points;
+    if (!fit.used[i] || picture.near) continue;
+    if (!matcher) {
+      model.emplace(field);
+      matcher.emplace(*model);
+    }
+    const auto suggestions = matcher->match(rough_scan(picture, start));
+    fit.used[i] = !suggestions.empty();
+    if (fit.used[i]) fit.poses[i] = suggestions.front().fix.pose;
+  }
+  return std::find(fit.used.begin(), fit.used.end(), true) != fit.used.end();
+}
+
+/// Gauss and Newton's steps, points being assigned anew at each. Returns whether they ended.
+bool iterate(MirrorFit& fit) {
+  constexpr int kMost = 60;
+  constexpr double kArrived = 1e-3;  // of a standard deviation
+  Eigen::MatrixXd information;
+  Eigen::VectorXd gradient;
+  for (int i = 0; i < kMost; ++i) {
+    fit.normal_equations(fit.assigned(), information, gradient);
+    const Eigen::VectorXd by = information.ldlt().solve(-gradient);
+    if (!by.allFinite()) return false;
+    // Far steps are those of wrong assignments.
+    const double longest = by.tail(fit.unknowns() - kFirstPose).cwiseAbs().maxCoeff();
+    constexpr double kLongest = 0.3;  // m, rad
+    fit.step(by * std::min(1.0, kLongest / std::max(1e-12, longest)));
+    if (by.dot(information * by) < kArrived * kArrived * static_cast<double>(by.size()))
+      return true;
+  }
+  return false;
+}
+
+/// Leaves out the pictures of whose points too few lie on lines. Returns whether it did.
+bool leave_out(const std::vector<MirrorPicture>& pictures, const MirrorCalibrationParams& params,
+               MirrorFit& fit) {
+  std::vector<int> on(pictures.size(), 0);
+  for (const OnLine& point : fit.assigned()) ++on[point.picture];
+  bool left = false;
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    const auto enough = std::max(static_cast<double>(params.min_points),
+                                 params.min_share * static_cast<double>(pictures[i].points.size()));
+    if (!fit.used[i] || static_cast<double>(on[i]) >= enough) continue;
+    fit.used[i] = false;
+    left = true;
+  }
+  return left;
+}
+
+/// Poses, points and residuals of the pictures, and the misfit.
+void describe_residuals(const std::vector<MirrorPicture>& pictures, const MirrorFit& fit,
+                        const std::vector<OnLine>& points, MirrorCalibration& out) {
+  std::vector<double> squares_px(pictures.size(), 0.0);
+  out.pictures.resize(pictures.size());
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    out.pictures[i].used = fit.used[i];
+    out.pictures[i].pose = fit.poses[i];
+    out.pictures[i].on.assign(pictures[i].points.size(), false);
+  }
+  double chi2 = 0.0;
+  for (const OnLine& at : points) {
+    const double r = at.residual.whitened();
+    const double off_px = r * pictures[at.picture].points[at.point].sigma_px;
+    out.pictures[at.picture].on[at.point] = true;
+    squares_px[at.picture] += off_px * off_px;
+    chi2 += r * r;
+  }
+  for (std::size_t i = 0; i < pictures.size(); ++i)
+    out.pictures[i].rms_px = std::sqrt(squares_px[i] / std::max(1, out.pictures[i].points_on()));
+  const auto count = static_cast<double>(points.size());
+  const auto used = static_cast<double>(std::count(fit.used.begin(), fit.used.end(), true));
+  const double freedom = count - 5.0 - 3.0 * used;
+  out.misfit = chi2 / std::max(1.0, freedom);
+  out.rms_px =
+      std::sqrt(std::accumulate(squares_px.begin(), squares_px.end(), 0.0) / std::max(1.0, count));
 }
 
 }  // namespace
 
-MirrorOnRobot MirrorOnRobot::with(const MirrorErrors& errors) const {
-  MirrorOnRobot camera = *this;
-  camera.mirror.px *= 1.0 + errors[kScale];
-  camera.mirror.py *= 1.0 + errors[kScale];
-  camera.mirror.u0 += errors[kCentreU];
-  camera.mirror.v0 += errors[kCentreV];
-  camera.rMc.rotate(Eigen::AngleAxisd(errors[kTiltX], Vector3d::UnitX()) *
-                    Eigen::AngleAxisd(errors[kTiltY], Vector3d::UnitY()));
-  return camera;
+std::string_view to_string(MirrorParameter parameter) {
+  constexpr std::array<std::string_view, kMirrorParameters> kNames{
+      "focal", "u0", "v0", "tilt_x", "tilt_y", "xi", "height"};
+  return kNames[static_cast<std::size_t>(parameter)];
 }
 
-std::optional<Vector2d> MirrorOnRobot::pixel_of(const Vector2d& p_r) const {
-  return project(CameraModel{mirror},
-                 rMc.inverse(Eigen::Isometry) * Vector3d(p_r.x(), p_r.y(), 0.0));
+MirrorMount changed(const MirrorMount& start, const MirrorVector& change) {
+  MirrorMount out = start;
+  out.mirror.px *= 1.0 + change[0];
+  out.mirror.py *= 1.0 + change[0];
+  out.mirror.u0 += change[1];
+  out.mirror.v0 += change[2];
+  out.rMc.rotate(Eigen::AngleAxisd(change[3], Eigen::Vector3d::UnitX()) *
+                 Eigen::AngleAxisd(change[4], Eigen::Vector3d::UnitY()));
+  out.mirror.xi = std::max(0.0, out.mirror.xi + change[5]);
+  out.rMc.translation().z() += change[6];
+  return out;
 }
 
-std::optional<FloorOfPixel> floor_of_pixel(const MirrorOnRobot& camera, const Vector2d& uv) {
-  constexpr double kShallowest = 1e-3;  // rad below the horizon
-  const CameraModel model = camera.mirror;
-  const auto d_c = ray(model, uv);
-  const auto dray_duv = ray_jacobian(model, uv);
-  if (!d_c || !dray_duv) return std::nullopt;
-  const Eigen::Matrix3d R = camera.rMc.linear();
-  const Vector3d d = R * *d_c;
-  if (d.z() > -kShallowest) return std::nullopt;
-  const Vector3d& eye = camera.rMc.translation();
-  // The ray meets the floor at eye + t d.
-  const double t = -eye.z() / d.z();
-  Eigen::Matrix<double, 2, 3> dp_dd;
-  dp_dd << t, 0.0, -t * d.x() / d.z(), 0.0, t, -t * d.y() / d.z();
-  const Eigen::Matrix<double, 2, 3> dp_ddc = dp_dd * R;
-  const Eigen::Matrix2d dp_duv = dp_ddc * *dray_duv;
-  FloorOfPixel floor;
-  floor.p_r = (eye + t * d).head<2>();
-  // A longer focal length, or a middle farther on, shows at a pixel what was nearer to the old
-  // middle.
-  floor.dp_derrors.col(kScale) = -dp_duv * (uv - Vector2d(camera.mirror.u0, camera.mirror.v0));
-  floor.dp_derrors.col(kTiltX) = dp_ddc * Vector3d::UnitX().cross(*d_c);
-  floor.dp_derrors.col(kTiltY) = dp_ddc * Vector3d::UnitY().cross(*d_c);
-  floor.dp_derrors.col(kCentreU) = -dp_duv.col(0);
-  floor.dp_derrors.col(kCentreV) = -dp_duv.col(1);
-  return floor;
+int MirrorPictureFit::points_on() const {
+  return static_cast<int>(std::count(on.begin(), on.end(), true));
 }
 
-CorrectedScan carried(const CorrectedScan& scan_b, const Pose2& aMb, Stamp stamp) {
-  CorrectedScan carried_scan = scan_b;
-  carried_scan.scan = vigia::carried(scan_b.scan, aMb, stamp);
-  const Matrix2d R = plane_rotation(aMb.theta);
-  for (Matrix2d& covariance : carried_scan.own) covariance = R * covariance * R.transpose();
-  for (auto& dp_derrors : carried_scan.dp_derrors) dp_derrors = R * dp_derrors;
-  return carried_scan;
+double MirrorCalibration::sigma(MirrorParameter parameter) const {
+  const auto k = static_cast<Eigen::Index>(parameter);
+  return std::sqrt(std::max(0.0, covariance(k, k)));
 }
 
-MirrorCalibration::MirrorCalibration(const FieldModel& model, const MirrorErrorParams& params,
-                                     const OdometryNoise& odometry)
-    : model_(&model), params_(params), odometry_(odometry) {
-  P_.bottomRightCorner<kMirrorErrors, kMirrorErrors>() =
-      initial_sigmas(params_).cwiseAbs2().asDiagonal();
-}
-
-void MirrorCalibration::predict(const OdometryIncrement& increment) {
-  const MirrorErrors drift = params_.drift * initial_sigmas(params_);
-  P_.diagonal().tail<kMirrorErrors>() +=
-      (increment.to - increment.from).seconds() * drift.cwiseAbs2();
-  if (!placed_) return;
-  const Eigen::Matrix3d F = move_jacobian_pose(pose_, increment);
-  const Eigen::Matrix3d G = move_jacobian_control(pose_, increment);
-  P_.topRows<3>() = (F * P_.topRows<3>()).eval();
-  P_.leftCols<3>() = (P_.leftCols<3>() * F.transpose()).eval();
-  P_.topLeftCorner<3, 3>() += G * control_covariance(increment, odometry_) * G.transpose();
-  pose_ = move(pose_, increment);
-}
-
-CorrectedScan MirrorCalibration::corrected(const FieldScan& scan,
-                                           const MirrorOnRobot& camera) const {
-  const MirrorOnRobot known = camera.with(errors_);
-  const ErrorCovariance unknown = covariance();
-  CorrectedScan corrected_scan;
-  corrected_scan.scan = scan;
-  corrected_scan.scan.points.clear();
-  for (const FieldPoint& point : scan.points) {
-    const auto uv = camera.pixel_of(point.p_r);
-    const auto floor = uv ? floor_of_pixel(known, *uv) : std::nullopt;
-    if (!floor) continue;
-    corrected_scan.scan.points.push_back(
-        {floor->p_r,
-         point.covariance + floor->dp_derrors * unknown * floor->dp_derrors.transpose()});
-    corrected_scan.own.push_back(point.covariance);
-    corrected_scan.dp_derrors.push_back(floor->dp_derrors);
+MirrorCalibration calibrate_mirror(const FieldMap& field, const MirrorMount& start,
+                                   const std::vector<MirrorPicture>& pictures,
+                                   const MirrorCalibrationParams& params) {
+  MirrorCalibration out;
+  out.mount = start;
+  MirrorFit fit(field, start, pictures, params);
+  if (!place_pictures(field, start, pictures, params, fit)) {
+    describe_residuals(pictures, fit, {}, out);
+    return out;
   }
-  return corrected_scan;
+  bool ended = iterate(fit);
+  if (leave_out(pictures, params, fit)) ended = iterate(fit);
+  const std::vector<OnLine> points = fit.assigned();
+  describe_residuals(pictures, fit, points, out);
+  out.mount = fit.mount();
+  out.change = fit.change;
+  if (points.empty()) return out;
+  out.status = ended ? MirrorCalibrationStatus::converged : MirrorCalibrationStatus::not_converged;
+  Eigen::MatrixXd information;
+  Eigen::VectorXd gradient;
+  fit.normal_equations(points, information, gradient);
+  const Eigen::MatrixXd covariance =
+      information.ldlt().solve(Eigen::MatrixXd::Identity(fit.unknowns(), fit.unknowns()));
+  out.covariance =
+      std::max(1.0, out.misfit) * covariance.topLeftCorner<kMirrorParameters, kMirrorParameters>();
+  return out;
 }
 
-/// The points that lie on one line beyond doubt, at a pose and where the errors are @p further than
-/// known.
-std::vector<MirrorCalibration::Row> MirrorCalibration::rows_of(const CorrectedScan& scan,
-                                                               const Pose2& pose,
-                                                               const MirrorErrors& further) const {
-  const Matrix2d R = plane_rotation(pose.theta);
-  const double floor_variance = model_->params().floor_m * model_->params().floor_m;
-  std::vector<Row> rows;
-  for (std::size_t i = 0; i < scan.scan.points.size(); ++i) {
-    const Eigen::Matrix<double, 2, kMirrorErrors> dw_derrors = R * scan.dp_derrors[i];
-    const Vector2d arm = R * scan.scan.points[i].p_r + dw_derrors * further;
-    std::optional<Row> row;
-    double best = 0.0;
-    double others = 0.0;
-    for (const std::uint16_t j : model_->distance().near(pose.position() + arm)) {
-      const LineOffset at = line_offset(model_->distance().lines()[j], pose.position() + arm);
-      if (at.inside_m < 0.0) continue;
-      const Vector2d n_r = R.transpose() * at.normal;
-      Row candidate{};
-      candidate.h << at.normal, at.normal.dot(Vector2d(-arm.y(), arm.x())),
-          dw_derrors.transpose() * at.normal;
-      candidate.offset_m = at.distance_m;
-      candidate.own_variance = n_r.dot(scan.own[i] * n_r) + floor_variance;
-      candidate.variance = n_r.dot(scan.scan.points[i].covariance * n_r) + floor_variance;
-      candidate.believed_variance = candidate.own_variance + candidate.h.dot(P_ * candidate.h);
-      const double density = normal_density(at.distance_m, candidate.believed_variance);
-      others += std::min(best, density);
-      if (density <= best) continue;
-      best = density;
-      row = candidate;
-    }
-    if (row && others < kOtherLine * best &&
-        row->offset_m * row->offset_m < kOfLineSigmas * kOfLineSigmas * row->believed_variance)
-      rows.push_back(*row);
+std::optional<FloorDistance> floor_distance(const MirrorCalibration& calibration,
+                                            double radius_px) {
+  MirrorMount level = calibration.mount;
+  level.rMc.linear() = Eigen::AngleAxisd(kPi, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  level.rMc.translation().head<2>().setZero();
+  const auto distance = [&](const MirrorVector& by) -> std::optional<double> {
+    const MirrorMount at = changed(level, by);
+    // The middle and the tilt are no part of the function.
+    const auto p = on_floor(at, {at.mirror.u0 + radius_px, at.mirror.v0});
+    return p ? std::optional<double>(p->norm()) : std::nullopt;
+  };
+  const auto here = distance(MirrorVector::Zero());
+  if (!here) return std::nullopt;
+  MirrorVector slope = MirrorVector::Zero();
+  for (const MirrorParameter k :
+       {MirrorParameter::focal, MirrorParameter::xi, MirrorParameter::height}) {
+    const auto i = static_cast<Eigen::Index>(k);
+    const double step = kMirrorSteps[static_cast<std::size_t>(k)];
+    const auto after = distance(step * MirrorVector::Unit(i));
+    const auto before = distance(-step * MirrorVector::Unit(i));
+    if (!after || !before) return std::nullopt;
+    slope[i] = (*after - *before) / (2.0 * step);
   }
-  return rows;
-}
-
-/// How a pose that is matched with one scan moves with the errors.
-PoseByErrors MirrorCalibration::sensitivity(const std::vector<Row>& rows) const {
-  Eigen::Matrix3d pose = 1e-6 * Eigen::Matrix3d::Identity();
-  PoseByErrors mixed = PoseByErrors::Zero();
-  for (const Row& row : rows) {
-    const Vector3d h = row.h.head<3>() / row.variance;
-    pose += h * row.h.head<3>().transpose();
-    mixed += h * row.h.tail<kMirrorErrors>().transpose();
-  }
-  return -pose.ldlt().solve(mixed);
-}
-
-/// Starts where the localizer believes itself to be, which the errors have moved.
-void MirrorCalibration::place(const Belief& belief, const PoseByErrors& dpose_derrors) {
-  const ErrorCovariance unknown = covariance();
-  placed_ = true;
-  pose_ = belief.pose;
-  P_.topLeftCorner<3, 3>() =
-      belief.covariance + dpose_derrors * unknown * dpose_derrors.transpose();
-  P_.topRightCorner<3, kMirrorErrors>() = dpose_derrors * unknown;
-  P_.bottomLeftCorner<kMirrorErrors, 3>() = P_.topRightCorner<3, kMirrorErrors>().transpose();
-}
-
-bool MirrorCalibration::elsewhere(const Belief& belief) const {
-  const Vector3d off = difference(pose_, belief.pose);
-  return off.head<2>().norm() > kElsewhere_m || std::abs(off.z()) > kElsewhereTurn;
-}
-
-void MirrorCalibration::update(const CorrectedScan& scan, const Belief& belief) {
-  if (belief.status != BeliefStatus::tracking) {
-    placed_ = false;
-    return;
-  }
-  const bool starts = !placed_ || elsewhere(belief);
-  if (starts) place(belief, PoseByErrors::Zero());
-  std::vector<Row> rows = rows_of(scan, pose_, MirrorErrors::Zero());
-  if (rows.size() < kFewestRows) {
-    if (starts) placed_ = false;
-    return;
-  }
-  if (starts) {
-    place(belief, sensitivity(rows));
-  } else {
-    const Covariance prior = P_.inverse();
-    Covariance information = prior;
-    State step = State::Zero();
-    for (int k = 0; k < kCalibrationSteps; ++k) {
-      information = prior;
-      State gradient = State::Zero();
-      for (const Row& row : rows) {
-        const State weighted = row.h / (params_.alike_scans * row.own_variance);
-        information += weighted * row.h.transpose();
-        gradient -= weighted * (row.offset_m - row.h.dot(step));
-      }
-      step = information.ldlt().solve(gradient);
-      rows = rows_of(scan, Pose2::from_vector(pose_.vector() + step.head<3>()),
-                     step.tail<kMirrorErrors>());
-      if (rows.size() < kFewestRows) return;
-    }
-    pose_ = Pose2::from_vector(pose_.vector() + step.head<3>());
-    errors_ += step.tail<kMirrorErrors>();
-    const Covariance posterior = information.inverse();
-    P_ = 0.5 * (posterior + posterior.transpose());
-  }
-  const PoseByErrors dpose_derrors = sensitivity(rows);
-  widening_ = dpose_derrors * covariance() * dpose_derrors.transpose();
+  return FloorDistance{*here, std::sqrt(slope.dot(calibration.covariance * slope))};
 }
 
 }  // namespace vigia::localization

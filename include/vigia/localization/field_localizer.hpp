@@ -9,7 +9,7 @@
 #include "vigia/localization/field_tracker.hpp"
 #include "vigia/localization/localizer.hpp"
 #include "vigia/localization/mcl.hpp"
-#include "vigia/localization/mirror_calibration.hpp"
+#include "vigia/localization/mirror_self_calibration.hpp"
 #include "vigia/localization/murea.hpp"
 
 namespace vigia::localization {
@@ -24,7 +24,7 @@ struct MirrorOfRig {
 /// scan without points is degenerate, and a late one is carried to the present by the odometry
 /// since its exposure, whose error in so short a time is small beside the scan's.
 ///
-/// A mirror camera's errors are estimated beside the pose (MirrorCalibration) where the robot's rig
+/// A mirror camera's errors are estimated beside the pose (MirrorSelfCalibration) where the robot's rig
 /// is given: a method gets the scans as these errors leave them, and the belief's covariance has
 /// what is not known of them beside the method's own.
 class FieldLocalizer : public Localizer {
@@ -54,7 +54,7 @@ class FieldLocalizer : public Localizer {
 
   std::deque<Place> places_;  ///< of the last second, in order of time
   std::optional<MirrorOfRig> mirror_;
-  std::optional<MirrorCalibration> calibration_;
+  std::optional<MirrorSelfCalibration> calibration_;
   Belief belief_;
 };
 

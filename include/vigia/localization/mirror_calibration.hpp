@@ -1,114 +1,104 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "vigia/core/belief.hpp"
 #include "vigia/core/camera_model.hpp"
-#include "vigia/core/field_scan.hpp"
-#include "vigia/core/odometry.hpp"
-#include "vigia/localization/field_model.hpp"
+#include "vigia/core/field_map.hpp"
+#include "vigia/core/pose.hpp"
 
 namespace vigia::localization {
 
-/// What a mirror camera's calibration may leave wrong, σ.
-struct MirrorErrorParams {
-  double scale = 0.005;         ///< relative, of its focal length
-  double tilt = from_deg(0.1);  ///< about either axis of the image, rad
-  double centre_px = 0.4;       ///< of either coordinate of its middle
-  /// What changes in time: share of these σ in √s.
-  double drift = 0.03;
-  /// Scans in a row whose points' errors are alike, for they come from the same lines seen from
-  /// nearly the same place: so many scans teach as much about the mirror as one whose errors are
-  /// new.
-  double alike_scans = 25.0;
+/// Where a ray in a mirror camera's picture crosses a painted line: the pixels of its two edges.
+struct MirrorPoint {
+  Eigen::Vector2d inner_uv = Eigen::Vector2d::Zero();
+  Eigen::Vector2d outer_uv = Eigen::Vector2d::Zero();
+  double sigma_px = 0.1;  ///< of their middle, along the ray
 };
 
-/// Errors of a mirror camera: relative scale, tilt about x and y of frame c (rad), middle (px).
-constexpr int kMirrorErrors = 5;
-using MirrorErrors = Eigen::Matrix<double, kMirrorErrors, 1>;
+struct MirrorPicture {
+  std::vector<MirrorPoint> points;
+  /// Where the robot stood, about. Without it the points are matched with the whole field.
+  std::optional<Pose2> near;
+};
 
-/// A mirror camera and where the robot has it.
-struct MirrorOnRobot {
+/// A mirror camera over the floor z = 0 of the robot's frame.
+struct MirrorMount {
   UnifiedOmni mirror;
   Eigen::Isometry3d rMc = Eigen::Isometry3d::Identity();
-
-  /// What it is with these errors.
-  MirrorOnRobot with(const MirrorErrors& errors) const;
-  /// The pixel of a point of the floor z = 0, frame r.
-  std::optional<Eigen::Vector2d> pixel_of(const Eigen::Vector2d& p_r) const;
 };
 
-/// Where the floor lies that a pixel shows, frame r, and how that moves with the camera's errors.
-struct FloorOfPixel {
-  Eigen::Vector2d p_r;
-  Eigen::Matrix<double, 2, kMirrorErrors> dp_derrors;
+/// What is calibrated, each as its change from the start: the focal length relatively, the
+/// principal point in px, the tilt in rad, rMc = rMc_start Rx(tilt_x) Ry(tilt_y), ξ, and the height
+/// of the mirror in m. A turn about the mirror's axis cannot be told from the robot's heading.
+enum class MirrorParameter { focal, u0, v0, tilt_x, tilt_y, xi, height };
+constexpr std::size_t kMirrorParameters = 7;
+std::string_view to_string(MirrorParameter parameter);
+
+using MirrorVector = Eigen::Matrix<double, kMirrorParameters, 1>;
+using MirrorMatrix = Eigen::Matrix<double, kMirrorParameters, kMirrorParameters>;
+
+/// The mount whose parameters differ from @p start by @p change.
+MirrorMount changed(const MirrorMount& start, const MirrorVector& change);
+
+struct MirrorCalibrationParams {
+  /// σ of each parameter about its start; 0: known.
+  std::array<double, kMirrorParameters> prior_sigma{0.1,           20.0, 20.0, from_deg(5.0),
+                                                    from_deg(5.0), 0.0,  0.0};
+  double gate = 4.0;       ///< σ off a line, beyond which a point is none of it
+  int min_points = 12;     ///< on lines, in a picture that counts
+  double min_share = 0.4;  ///< of a picture's points that lie on lines, else it is left out
 };
-std::optional<FloorOfPixel> floor_of_pixel(const MirrorOnRobot& camera, const Eigen::Vector2d& uv);
 
-/// A scan whose points lie where the errors known so far leave them. Their covariances have grown
-/// by what is not known of the errors.
-struct CorrectedScan {
-  FieldScan scan;
-  std::vector<Eigen::Matrix2d> own;  ///< the points' covariances without
-  std::vector<Eigen::Matrix<double, 2, kMirrorErrors>> dp_derrors;
+enum class MirrorCalibrationStatus { converged, not_converged, no_picture };
+
+/// What became of a picture's points.
+struct MirrorPictureFit {
+  bool used = false;     ///< enough of its points lie on lines
+  Pose2 pose;            ///< of the robot
+  std::vector<bool> on;  ///< for each point, whether it counts as one of a line
+  int points_on() const;
+  double rms_px = 0.0;  ///< of the points on lines, along their rays
 };
-/// The same from another place, as carried() does it.
-CorrectedScan carried(const CorrectedScan& scan_b, const Pose2& aMb, Stamp stamp);
 
-/// Estimates a mirror's errors while the robot drives. They move all points of a picture together,
-/// which no filter averages out that takes points' errors for independent: 0.05° of tilt moves a
-/// point at 4 m by 2 cm, a picture's points fix the pose to less than a millimetre. A Kalman
-/// filter over pose and errors together, (x, y, θ, errors), iterated at each scan, learns from the
-/// points whose line is beyond doubt; it starts where a localizer believes itself to be.
-class MirrorCalibration {
- public:
-  MirrorCalibration(const FieldModel& model, const MirrorErrorParams& params,
-                    const OdometryNoise& odometry);
+struct MirrorCalibration {
+  MirrorCalibrationStatus status = MirrorCalibrationStatus::no_picture;
+  MirrorMount mount;
+  MirrorVector change = MirrorVector::Zero();      ///< from the start
+  MirrorMatrix covariance = MirrorMatrix::Zero();  ///< of it; the poses are marginalised
+  std::vector<MirrorPictureFit> pictures;          ///< as they were given
+  double misfit = 0.0;  ///< χ² per degree of freedom; above 1 it widens the covariance
+  double rms_px = 0.0;
 
-  /// Forgets the place, and keeps what is known of the mirror.
-  void lose_place() { placed_ = false; }
-  void predict(const OdometryIncrement& increment);
-  CorrectedScan corrected(const FieldScan& scan, const MirrorOnRobot& camera) const;
-  /// @p belief: the localizer's after the same scan.
-  void update(const CorrectedScan& scan, const Belief& belief);
-
-  const MirrorErrors& errors() const { return errors_; }
-  Eigen::Matrix<double, kMirrorErrors, kMirrorErrors> covariance() const {
-    return P_.bottomRightCorner<kMirrorErrors, kMirrorErrors>();
-  }
-  /// What is to be added to the covariance of a pose from the last scan.
-  const Eigen::Matrix3d& widening() const { return widening_; }
-
- private:
-  static constexpr int kStates = 3 + kMirrorErrors;
-  using State = Eigen::Matrix<double, kStates, 1>;
-  using Covariance = Eigen::Matrix<double, kStates, kStates>;
-  /// A point beside its line.
-  struct Row {
-    State h;  ///< ∂offset/∂(pose, errors)
-    double offset_m;
-    double own_variance;       ///< of the point's offset
-    double variance;           ///< with what is not known of the errors
-    double believed_variance;  ///< and of the pose: of the offset as predicted
-  };
-  std::vector<Row> rows_of(const CorrectedScan& scan, const Pose2& pose,
-                           const MirrorErrors& further) const;
-  Eigen::Matrix<double, 3, kMirrorErrors> sensitivity(const std::vector<Row>& rows) const;
-  void place(const Belief& belief, const Eigen::Matrix<double, 3, kMirrorErrors>& dpose_derrors);
-  bool elsewhere(const Belief& belief) const;
-
-  const FieldModel* model_;
-  MirrorErrorParams params_;
-  OdometryNoise odometry_;
-  bool placed_ = false;
-  Pose2 pose_;
-  MirrorErrors errors_ = MirrorErrors::Zero();
-  Covariance P_ = Covariance::Zero();
-  Eigen::Matrix3d widening_ = Eigen::Matrix3d::Zero();
+  double sigma(MirrorParameter parameter) const;
 };
+
+/// Calibrates a mirror on a field's lines, or on a target of rings or stripes that is described as
+/// a field: the parameters and the pose of each picture by Gauss and Newton's method on the offsets
+/// of the points' edges from the lines,
+///
+///   r_i = ½ (d(p_inner) + d(p_outer)) / (σ_i |∂½(d_inner + d_outer)/∂ρ|),
+///
+/// d the signed offset from the nearest line's middle, ρ the way along the ray. Points beyond the
+/// gate, which closes with the residuals' median, take no part. Half a turn of a pose on a
+/// symmetric field changes nothing.
+MirrorCalibration calibrate_mirror(const FieldMap& field, const MirrorMount& start,
+                                   const std::vector<MirrorPicture>& pictures,
+                                   const MirrorCalibrationParams& params = {});
+
+/// The mirror's distance function (Minho §III): how far from the foot of a level mirror what is
+/// seen radius_px from the middle lies on the floor, and the σ that the calibration leaves. Nothing
+/// at or above the horizon.
+struct FloorDistance {
+  double distance_m = 0.0;
+  double sigma_m = 0.0;
+};
+std::optional<FloorDistance> floor_distance(const MirrorCalibration& calibration, double radius_px);
 
 }  // namespace vigia::localization
