@@ -21,8 +21,7 @@ FieldMap field(const char* name) {
   return read_field_map(reader.map("field"));
 }
 
-localization::ColourSighting exact_goal(const FieldMap& map, FieldColour colour,
-                                        const Pose2& pose) {
+ColourSighting exact_goal(const FieldMap& map, FieldColour colour, const Pose2& pose) {
   const Eigen::Vector2d to = map.goal(colour)->centre() - pose.position();
   return {colour, wrap_angle(std::atan2(to.y(), to.x()) - pose.theta), to.norm(), 0.005, 0.1};
 }
