@@ -30,7 +30,7 @@ MirrorErrors some_errors() {
 
 TEST(MirrorSelfCalibration, AFloorPointMovesWithTheMirrorsErrorsAsItsJacobianSays) {
   const MirrorOnRobot camera = soccer_mirror_on_robot();
-  for (const Eigen::Vector2d p : {Eigen::Vector2d(3.0, 1.0), Eigen::Vector2d(-0.8, 0.5)}) {
+  for (const Eigen::Vector2d& p : {Eigen::Vector2d(3.0, 1.0), Eigen::Vector2d(-0.8, 0.5)}) {
     const Eigen::Vector2d uv = camera.pixel_of(p).value();
     const FloorOfPixel floor = floor_of_pixel(camera, uv).value();
     EXPECT_LT((floor.p_r - p).norm(), 1e-9);
