@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Dense>
@@ -38,31 +39,54 @@ MirrorPoint moved_along_ray(const MirrorPoint& point, double by_px) {
   return {point.inner_uv + by_px * along, point.outer_uv + by_px * along, point.sigma_px};
 }
 
-/// ½ (d(p_inner) + d(p_outer)), m.
-std::optional<double> offset_from(const FieldLine& line, const MirrorPoint& point,
-                                  const MirrorMount& mount, const Pose2& pose) {
+/// The signed offsets of a point's edges from a line's middle, m.
+struct EdgeOffsets {
+  double inner_m = 0.0;
+  double outer_m = 0.0;
+  double mean() const { return 0.5 * (inner_m + outer_m); }
+  double apart() const { return std::abs(outer_m - inner_m); }
+};
+
+std::optional<EdgeOffsets> edge_offsets(const FieldLine& line, const MirrorPoint& point,
+                                        const MirrorMount& mount, const Pose2& pose) {
   const auto inner = on_floor(mount, point.inner_uv);
   const auto outer = on_floor(mount, point.outer_uv);
   if (!inner || !outer) return std::nullopt;
-  return 0.5 * (line_offset(line, in_field(pose, *inner)).distance_m +
-                line_offset(line, in_field(pose, *outer)).distance_m);
+  return EdgeOffsets{line_offset(line, in_field(pose, *inner)).distance_m,
+                     line_offset(line, in_field(pose, *outer)).distance_m};
+}
+
+/// Their mean, m.
+std::optional<double> offset_from(const FieldLine& line, const MirrorPoint& point,
+                                  const MirrorMount& mount, const Pose2& pose) {
+  const auto offsets = edge_offsets(line, point, mount, pose);
+  return offsets ? std::optional<double>(offsets->mean()) : std::nullopt;
 }
 
 /// How far a point lies off a line, and how far that may be by its own error.
 struct LineResidual {
   double offset_m = 0.0;
   double sigma_m = 1.0;
+  double wider_m = 0.0;  ///< than the line is painted: what the edges are apart more, or less
   double whitened() const { return offset_m / sigma_m; }
+  /// Whether the edges can be those of this line alone, where what is not known of the mirror may
+  /// change its width by a share. Where lines meet, or a ray runs along one,
+  /// they are not, and their middle is beside the line's.
+  bool has_the_width(const FieldLine& line, double mirror_share) const {
+    constexpr double kSigmas = 2.0;  // two edges, each √2 σ of their middle
+    return std::abs(wider_m) < mirror_share * line.width_m + kSigmas * 2.0 * sigma_m;
+  }
 };
 
 std::optional<LineResidual> line_residual(const FieldLine& line, const MirrorPoint& point,
                                           const MirrorMount& mount, const Pose2& pose) {
   constexpr double kMapError_m = 0.0005;
-  const auto offset = offset_from(line, point, mount, pose);
+  const auto offsets = edge_offsets(line, point, mount, pose);
   const auto before = offset_from(line, moved_along_ray(point, -0.5), mount, pose);
   const auto after = offset_from(line, moved_along_ray(point, 0.5), mount, pose);
-  if (!offset || !before || !after) return std::nullopt;
-  return LineResidual{*offset, std::hypot(point.sigma_px * (*after - *before), kMapError_m)};
+  if (!offsets || !before || !after) return std::nullopt;
+  return LineResidual{offsets->mean(), std::hypot(point.sigma_px * (*after - *before), kMapError_m),
+                      offsets->apart() - line.width_m};
 }
 
 /// A point and the line that it lies on.
@@ -75,16 +99,19 @@ struct OnLine {
 
 /// The line that a point lies off by the fewest σ.
 std::optional<OnLine> nearest_line(const FieldMap& field, const MirrorPoint& point,
-                                   const MirrorMount& mount, const Pose2& pose) {
+                                   const MirrorMount& mount, const Pose2& pose,
+                                   double mirror_share) {
   const auto middle = on_floor(mount, 0.5 * (point.inner_uv + point.outer_uv));
   if (!middle) return std::nullopt;
+  constexpr double kFarOff_m = 1.5;
   const Eigen::Vector2d p_w = in_field(pose, *middle);
   std::optional<OnLine> best;
   for (std::size_t k = 0; k < field.lines.size(); ++k) {
     const FieldLine& line = field.lines[k];
-    if (line_offset(line, p_w).inside_m < -0.5 * line.width_m) continue;
+    const LineOffset off = line_offset(line, p_w);
+    if (off.inside_m < -0.5 * line.width_m || std::abs(off.distance_m) > kFarOff_m) continue;
     const auto residual = line_residual(line, point, mount, pose);
-    if (!residual) continue;
+    if (!residual || !residual->has_the_width(line, mirror_share)) continue;
     if (!best || std::abs(residual->whitened()) < std::abs(best->residual.whitened()))
       best = OnLine{0, 0, k, *residual};
   }
@@ -118,7 +145,8 @@ class MirrorFit {
     const MirrorMount now = mount();
     for (std::size_t i = 0; i < pictures_.size(); ++i)
       for (std::size_t k = 0; used[i] && k < pictures_[i].points.size(); ++k)
-        if (auto found = nearest_line(field_, pictures_[i].points[k], now, poses[i])) {
+        if (auto found =
+                nearest_line(field_, pictures_[i].points[k], now, poses[i], mirror_share)) {
           found->picture = i;
           found->point = k;
           sizes.push_back(std::abs(found->residual.whitened()));
@@ -132,6 +160,17 @@ class MirrorFit {
                        [&](const OnLine& p) { return std::abs(p.residual.whitened()) > limit; }),
         all.end());
     return all;
+  }
+
+  /// The same points beside the same lines, by the estimate as it is now.
+  std::vector<OnLine> measured_anew(std::vector<OnLine> points) const {
+    const MirrorMount now = mount();
+    for (OnLine& at : points) {
+      const MirrorPoint& point = pictures_[at.picture].points[at.point];
+      const auto residual = line_residual(field_.lines[at.line], point, now, poses[at.picture]);
+      if (residual) at.residual = *residual;
+    }
+    return points;
   }
 
   Eigen::Index unknowns() const { return kFirstPose + 3 * static_cast<Eigen::Index>(poses.size()); }
@@ -169,6 +208,7 @@ class MirrorFit {
   MirrorVector change;
   std::vector<Pose2> poses;
   std::vector<bool> used;
+  double mirror_share = 0.03;  ///< of a line's width, by which the mirror may still be wrong
 
  private:
   using Row = Eigen::Matrix<double, 1, static_cast<int>(kMirrorParameters) + 3>;
@@ -224,10 +264,36 @@ class MirrorFit {
   const MirrorCalibrationParams& params_;
 };
 
-/// A picture's points on the floor by the mirror as it is known, with an error that leaves room for
-/// what is not.
-FieldScan rough_scan(const MirrorPicture& picture, const MirrorMount& mount) {
-  constexpr double kRoughly = 0.01;  // of the range
+/// Gauss and Newton's steps, points being assigned anew at each of the first: later a point at the
+/// gate that comes and goes would keep them from ending. Returns whether they ended.
+bool iterate(MirrorFit& fit) {
+  constexpr int kMost = 60;
+  constexpr int kAssigning = 40;
+  constexpr int kRough = 10;
+  constexpr double kArrived = 1e-3;  // of a standard deviation
+  Eigen::MatrixXd information;
+  Eigen::VectorXd gradient;
+  std::vector<OnLine> points;
+  for (int i = 0; i < kMost; ++i) {
+    fit.mirror_share = i < kRough ? 0.2 : 0.03;
+    points = i < kAssigning ? fit.assigned() : fit.measured_anew(std::move(points));
+    fit.normal_equations(points, information, gradient);
+    const Eigen::VectorXd by = information.ldlt().solve(-gradient);
+    if (!by.allFinite()) return false;
+    // Far steps are those of wrong assignments.
+    const double longest = by.tail(fit.unknowns() - kFirstPose).cwiseAbs().maxCoeff();
+    constexpr double kLongest = 0.3;  // m, rad
+    fit.step(by * std::min(1.0, kLongest / std::max(1e-12, longest)));
+    if (i >= kRough &&
+        by.dot(information * by) < kArrived * kArrived * static_cast<double>(by.size()))
+      return true;
+  }
+  return false;
+}
+
+/// A picture's points on the floor by a mirror of which @p open is not known: the errors of its
+/// scale and tilt move a point by open · h sec²θ, θ the angle from straight down.
+FieldScan rough_scan(const MirrorPicture& picture, const MirrorMount& mount, double open) {
   FieldScan scan;
   for (const MirrorPoint& point : picture.points) {
     const auto inner = on_floor(mount, point.inner_uv);
@@ -235,7 +301,8 @@ FieldScan rough_scan(const MirrorPicture& picture, const MirrorMount& mount) {
     if (!inner || !outer) continue;
     FieldPoint on;
     on.p_r = 0.5 * (*inner + *outer);
-    const double across = kRoughly * (mount.rMc.translation().z() + on.p_r.norm());
+    const double height = mount.rMc.translation().z();
+    const double across = open * (height + on.p_r.squaredNorm() / height);
     const double along =
         point.sigma_px * (*outer - *inner).norm() / (point.outer_uv - point.inner_uv).norm();
     const Eigen::Vector2d direction = on.p_r.normalized();
@@ -246,47 +313,95 @@ FieldScan rough_scan(const MirrorPicture& picture, const MirrorMount& mount) {
   return scan;
 }
 
-/// Marks the pictures that have too few points, or none that match. Returns whether any is in use.
-bool place_pictures(const FieldMap& field, const MirrorMount& start,
-                    const std::vector<MirrorPicture>& pictures,
-                    const MirrorCalibrationParams& params, MirrorFit& fit) {
-  std::optional<FieldModel> model;
-  std::optional<FieldMatcher> matcher;
-  for (std::size_t i = 0; i < pictures.size(); ++i) {
-    const MirrorPicture& picture = pictures[i];
-    fit.poses.push_back(picture.near.value_or(Pose2{}));
-    fit.used[i] = static_cast<int>(picture.points.size()) >= params.min_points;
-    if (!fit.used[i] || picture.near) continue;
-    if (!matcher) {
-      model.emplace(field);
-      matcher.emplace(*model);
-    }
-    const auto suggestions = matcher->match(rough_scan(picture, start));
-    fit.used[i] = !suggestions.empty();
-    if (fit.used[i]) fit.poses[i] = suggestions.front().fix.pose;
-  }
-  return std::find(fit.used.begin(), fit.used.end(), true) != fit.used.end();
-}
+/// The mirror and the pose that a single picture makes of one start, and how well they fit.
+struct PictureStart {
+  MirrorVector change = MirrorVector::Zero();
+  Pose2 pose;
+  double cost = 0.0;  ///< mean over the points of min(r², gate²)
+};
 
-/// Gauss and Newton's steps, points being assigned anew at each. Returns whether they ended.
-bool iterate(MirrorFit& fit) {
-  constexpr int kMost = 60;
-  constexpr double kArrived = 1e-3;  // of a standard deviation
-  Eigen::MatrixXd information;
-  Eigen::VectorXd gradient;
-  for (int i = 0; i < kMost; ++i) {
-    fit.normal_equations(fit.assigned(), information, gradient);
-    const Eigen::VectorXd by = information.ldlt().solve(-gradient);
-    if (!by.allFinite()) return false;
-    // Far steps are those of wrong assignments.
-    const double longest = by.tail(fit.unknowns() - kFirstPose).cwiseAbs().maxCoeff();
-    constexpr double kLongest = 0.3;  // m, rad
-    fit.step(by * std::min(1.0, kLongest / std::max(1e-12, longest)));
-    if (by.dot(information * by) < kArrived * kArrived * static_cast<double>(by.size()))
-      return true;
+/// Finds where the pictures were taken and what the mirror is, about.
+class PicturePlacer {
+ public:
+  PicturePlacer(const FieldMap& field, const MirrorMount& start,
+                const std::vector<MirrorPicture>& pictures, const MirrorCalibrationParams& params)
+      : field_(field), start_(start), pictures_(pictures), params_(params) {}
+
+  /// Marks the pictures that have too few points, or none that match. Returns whether any is in
+  /// use. The picture that a mirror explains best tells the mirror by which the others are matched:
+  /// with one that is 1 % or half a degree off, lines 4 m away lie decimetres beside the field's.
+  bool place(MirrorFit& fit) {
+    for (std::size_t i = 0; i < pictures_.size(); ++i) {
+      fit.poses.push_back(pictures_[i].near.value_or(Pose2{}));
+      fit.used[i] = static_cast<int>(pictures_[i].points.size()) >= params_.min_points;
+    }
+    const std::optional<PictureStart> best = best_start(fit.used);
+    if (!best) return false;
+    fit.change = best->change;
+    for (std::size_t i = 0; i < pictures_.size(); ++i) {
+      if (!fit.used[i] || pictures_[i].near) continue;
+      constexpr double kFairlyKnown = 0.002;
+      const auto poses = matched(pictures_[i], fit.mount(), kFairlyKnown, 1);
+      fit.used[i] = !poses.empty();
+      if (fit.used[i]) fit.poses[i] = poses.front();
+    }
+    return std::find(fit.used.begin(), fit.used.end(), true) != fit.used.end();
   }
-  return false;
-}
+
+ private:
+  std::vector<Pose2> matched(const MirrorPicture& picture, const MirrorMount& mount, double open,
+                             std::size_t most) {
+    if (!matcher_) {
+      model_.emplace(field_);
+      matcher_.emplace(*model_);
+    }
+    std::vector<Pose2> poses;
+    for (const auto& suggestion : matcher_->match(rough_scan(picture, mount, open))) {
+      if (poses.size() == most) break;
+      poses.push_back(suggestion.fix.pose);
+    }
+    return poses;
+  }
+
+  std::optional<PictureStart> best_start(const std::vector<bool>& used) {
+    constexpr double kHardlyKnown = 0.012;  // half a degree, 1 %
+    constexpr std::size_t kMost = 6;
+    std::optional<PictureStart> best;
+    for (std::size_t i = 0; i < pictures_.size(); ++i) {
+      if (!used[i]) continue;
+      const MirrorPicture& picture = pictures_[i];
+      const auto poses = picture.near ? std::vector<Pose2>{*picture.near}
+                                      : matched(picture, start_, kHardlyKnown, kMost);
+      for (const Pose2& pose : poses) {
+        const PictureStart found = start_from(picture, pose);
+        if (!best || found.cost < best->cost) best = found;
+      }
+    }
+    return best;
+  }
+
+  PictureStart start_from(const MirrorPicture& picture, const Pose2& pose) const {
+    const std::vector<MirrorPicture> alone{picture};
+    MirrorFit fit(field_, start_, alone, params_);
+    fit.poses.push_back(pose);
+    iterate(fit);
+    PictureStart found{fit.change, fit.poses.front(), 0.0};
+    const double worst = params_.gate * params_.gate;
+    for (const MirrorPoint& point : picture.points) {
+      const auto on = nearest_line(field_, point, fit.mount(), found.pose, fit.mirror_share);
+      const double r = on ? on->residual.whitened() : params_.gate;
+      found.cost += std::min(worst, r * r) / static_cast<double>(picture.points.size());
+    }
+    return found;
+  }
+
+  const FieldMap& field_;
+  const MirrorMount& start_;
+  const std::vector<MirrorPicture>& pictures_;
+  const MirrorCalibrationParams& params_;
+  std::optional<FieldModel> model_;
+  std::optional<FieldMatcher> matcher_;
+};
 
 /// Leaves out the pictures of whose points too few lie on lines. Returns whether it did.
 bool leave_out(const std::vector<MirrorPicture>& pictures, const MirrorCalibrationParams& params,
@@ -368,7 +483,7 @@ MirrorCalibration calibrate_mirror(const FieldMap& field, const MirrorMount& sta
   MirrorCalibration out;
   out.mount = start;
   MirrorFit fit(field, start, pictures, params);
-  if (!place_pictures(field, start, pictures, params, fit)) {
+  if (!PicturePlacer(field, start, pictures, params).place(fit)) {
     describe_residuals(pictures, fit, {}, out);
     return out;
   }

@@ -94,8 +94,9 @@ CorrectedScan carried(const CorrectedScan& scan_b, const Pose2& aMb, Stamp stamp
   return carried_scan;
 }
 
-MirrorSelfCalibration::MirrorSelfCalibration(const FieldModel& model, const MirrorErrorParams& params,
-                                     const OdometryNoise& odometry)
+MirrorSelfCalibration::MirrorSelfCalibration(const FieldModel& model,
+                                             const MirrorErrorParams& params,
+                                             const OdometryNoise& odometry)
     : model_(&model), params_(params), odometry_(odometry) {
   P_.bottomRightCorner<kMirrorErrors, kMirrorErrors>() =
       initial_sigmas(params_).cwiseAbs2().asDiagonal();
@@ -115,7 +116,7 @@ void MirrorSelfCalibration::predict(const OdometryIncrement& increment) {
 }
 
 CorrectedScan MirrorSelfCalibration::corrected(const FieldScan& scan,
-                                           const MirrorOnRobot& camera) const {
+                                               const MirrorOnRobot& camera) const {
   const MirrorOnRobot known = camera.with(errors_);
   const ErrorCovariance unknown = covariance();
   CorrectedScan corrected_scan;
@@ -136,9 +137,8 @@ CorrectedScan MirrorSelfCalibration::corrected(const FieldScan& scan,
 
 /// The points that lie on one line beyond doubt, at a pose and where the errors are @p further than
 /// known.
-std::vector<MirrorSelfCalibration::Row> MirrorSelfCalibration::rows_of(const CorrectedScan& scan,
-                                                               const Pose2& pose,
-                                                               const MirrorErrors& further) const {
+std::vector<MirrorSelfCalibration::Row> MirrorSelfCalibration::rows_of(
+    const CorrectedScan& scan, const Pose2& pose, const MirrorErrors& further) const {
   const Matrix2d R = plane_rotation(pose.theta);
   const double floor_variance = model_->params().floor_m * model_->params().floor_m;
   std::vector<Row> rows;

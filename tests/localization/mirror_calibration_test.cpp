@@ -47,6 +47,7 @@ MirrorPicture picture_of(const FieldMap& field, const MirrorMount& mount, const 
     const Eigen::Vector2d along(std::cos(angle), std::sin(angle));
     const Eigen::Vector2d middle(319.5, 239.5);
     double entered = 0.0;  // where the ray came upon paint; 0: it lies on none
+    bool from_bare = false;
     for (double r = 40.0; r < 235.0; r += kStep) {
       const auto p = seen_at(mount, pose, middle + r * along);
       if (!p) break;
@@ -55,7 +56,8 @@ MirrorPicture picture_of(const FieldMap& field, const MirrorMount& mount, const 
         const LineOffset off = line_offset(line, *p);
         paint = paint || (std::abs(off.distance_m) <= 0.5 * line.width_m && off.inside_m > 0.0);
       }
-      if (paint && entered <= 0.0) entered = r - 0.5 * kStep;
+      if (paint && entered <= 0.0 && from_bare) entered = r - 0.5 * kStep;
+      from_bare = from_bare || !paint;
       if (paint || entered <= 0.0) continue;
       const double error = sigma_px * random.normal();
       // Where lines meet a run is wider than a line is.

@@ -24,9 +24,9 @@ struct MirrorOfRig {
 /// scan without points is degenerate, and a late one is carried to the present by the odometry
 /// since its exposure, whose error in so short a time is small beside the scan's.
 ///
-/// A mirror camera's errors are estimated beside the pose (MirrorSelfCalibration) where the robot's rig
-/// is given: a method gets the scans as these errors leave them, and the belief's covariance has
-/// what is not known of them beside the method's own.
+/// A mirror camera's errors are estimated beside the pose (MirrorSelfCalibration) where the robot's
+/// rig is given: a method gets the scans as these errors leave them, and the belief's covariance
+/// has what is not known of them beside the method's own.
 class FieldLocalizer : public Localizer {
  public:
   const Belief& belief() const final { return belief_; }

@@ -67,7 +67,7 @@ CorrectedScan carried(const CorrectedScan& scan_b, const Pose2& aMb, Stamp stamp
 class MirrorSelfCalibration {
  public:
   MirrorSelfCalibration(const FieldModel& model, const MirrorErrorParams& params,
-                    const OdometryNoise& odometry);
+                        const OdometryNoise& odometry);
 
   /// Forgets the place, and keeps what is known of the mirror.
   void lose_place() { placed_ = false; }
