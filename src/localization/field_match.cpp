@@ -183,8 +183,7 @@ std::vector<FieldMatcher::Suggestion> FieldMatcher::match(const FieldScan& scan)
     add(fix);
     if (!model_->lines_symmetric()) continue;
     fix.pose = FieldModel::half_turned(fix.pose);
-    fix.covariance.topRightCorner<2, 1>() *= -1.0;
-    fix.covariance.bottomLeftCorner<1, 2>() *= -1.0;
+    fix.covariance = FieldModel::half_turned(fix.covariance);
     add(fix);
   }
   std::sort(found.begin(), found.end(), [](const Suggestion& a, const Suggestion& b) {
@@ -201,6 +200,21 @@ std::vector<FieldMatcher::Suggestion> FieldMatcher::match(const FieldScan& scan)
     suggestion.fix.covariance = posterior.covariance;
   }
   return found;
+}
+
+std::vector<FieldMatcher::Suggestion> without_twins(
+    const std::vector<FieldMatcher::Suggestion>& suggestions) {
+  constexpr double kTwin_m = 0.3;
+  constexpr double kTwinTurn = 0.3;
+  std::vector<FieldMatcher::Suggestion> kept;
+  for (const auto& suggestion : suggestions) {
+    const Pose2 twin = FieldModel::half_turned(suggestion.fix.pose);
+    const bool known = std::any_of(kept.begin(), kept.end(), [&](const auto& other) {
+      return same_pose(other.fix.pose, twin, kTwin_m, kTwinTurn);
+    });
+    if (!known) kept.push_back(suggestion);
+  }
+  return kept;
 }
 
 }  // namespace vigia::localization

@@ -277,4 +277,22 @@ Pose2 FieldModel::half_turned(const Pose2& pose) {
   return {-pose.x, -pose.y, wrap_angle(pose.theta + kPi)};
 }
 
+Eigen::Matrix3d FieldModel::half_turned(const Eigen::Matrix3d& covariance) {
+  Eigen::Matrix3d turned = covariance;
+  turned.topRightCorner<2, 1>() *= -1.0;
+  turned.bottomLeftCorner<1, 2>() *= -1.0;
+  return turned;
+}
+
+FieldModel::EitherHalf FieldModel::weigh_halves(const FieldScan& scan, const Pose2& pose,
+                                                double turned) const {
+  const double here = log_likelihood_of_sightings(scan, pose);
+  if (turned == 0.0) return {here, 0.0};
+  const double there = log_likelihood_of_sightings(scan, half_turned(pose));
+  const double higher = std::max(here, there);
+  const double own = (1.0 - turned) * std::exp(here - higher);
+  const double twin = turned * std::exp(there - higher);
+  return {higher + std::log(own + twin), twin / (own + twin)};
+}
+
 }  // namespace vigia::localization

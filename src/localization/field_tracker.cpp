@@ -8,14 +8,16 @@
 
 #include "vigia/core/angle.hpp"
 #include "vigia/localization/field_posterior.hpp"
+#include "vigia/localization/normal_density.hpp"
 
 namespace vigia::localization {
 namespace {
 
 constexpr double kSameHypothesis_m = 0.15;
 constexpr double kSameTurn = 0.06;
-constexpr double kForgotten = 60.0;   // log weight below the best's at which a hypothesis goes
-constexpr double kIntegrated = -7.0;  // log weight from which a hypothesis is integrated over
+constexpr double kForgotten = 60.0;        // log weight below the best's at which a hypothesis goes
+constexpr double kIntegrated = -7.0;       // log weight from which a hypothesis is integrated over
+constexpr double kForgottenWeight = 1e-6;  // of a belief's hypotheses
 constexpr double kUsualGain = 0.05;
 constexpr double kFallen = 0.35;  // of the log-likelihood a point: about a fifth of the points lost
 
@@ -32,6 +34,12 @@ bool could_be(const Prior& prior, const Pose2& pose) {
 
 }  // namespace
 
+void FieldTracker::Hypothesis::half_turn() {
+  pose = FieldModel::half_turned(pose);
+  covariance = FieldModel::half_turned(covariance);
+  turned = 1.0 - turned;
+}
+
 FieldTracker::FieldTracker(const FieldModel& model, const FieldTrackerParams& params)
     : model_(&model), params_(params), matcher_(model), clutter_(model.params().clutter) {}
 
@@ -39,7 +47,7 @@ void FieldTracker::reset(Stamp stamp, const std::optional<Prior>& prior) {
   hypotheses_.clear();
   usual_.reset();
   since_check_ = params_.check_every;
-  if (prior) hypotheses_.push_back({prior->pose, prior->covariance, 0.0});
+  if (prior) hypotheses_.push_back({prior->pose, prior->covariance, 0.0, 0.0});
   belief_ = Belief{};
   belief_.stamp = stamp;
   refresh_belief();
@@ -87,28 +95,71 @@ void FieldTracker::refine_all(const FieldScan& scan, const std::vector<StraightG
       hypothesis.covariance = posterior.covariance;
       evidence = posterior.log_evidence + model_->log_likelihood_of_sightings(scan, posterior.mean);
     }
-    hypothesis.log_weight += evidence;
+    hypothesis.log_weight += evidence + weigh_sightings(scan, hypothesis);
   }
 }
 
-void FieldTracker::add_matches(const FieldScan& scan, const std::vector<StraightGroup>& groups,
-                               const Matches& matches) {
+/// What is to be added to the log evidence of a hypothesis, which counts the sightings as seen from
+/// its pose, for its twin's share.
+double FieldTracker::weigh_sightings(const FieldScan& scan, Hypothesis& hypothesis) const {
+  const auto either = model_->weigh_halves(scan, hypothesis.pose, hypothesis.turned);
+  hypothesis.turned = either.turned;
+  return either.log_likelihood - model_->log_likelihood_of_sightings(scan, hypothesis.pose);
+}
+
+/// Of a pose that a match suggests, before the scan: anywhere after a kidnapping, or beside one of
+/// the hypotheses.
+double FieldTracker::prior_density(const Pose2& pose,
+                                   const std::vector<Hypothesis>& predicted) const {
   const FieldMap& map = model_->map();
-  const double log_density = -std::log(map.length_m * map.width_m * 2.0 * kPi);
-  const double log_prior = (hypotheses_.empty() ? 0.0 : std::log(params_.kidnapped)) + log_density;
-  for (const auto& suggestion : matches) {
-    const bool known =
-        std::any_of(hypotheses_.begin(), hypotheses_.end(), [&](const Hypothesis& hypothesis) {
-          return same_hypothesis(hypothesis.pose, suggestion.fix.pose);
-        });
-    if (known) continue;
-    FieldRefineParams fixed;
-    fixed.clutter = clutter_;
+  const double anywhere = 1.0 / (map.length_m * map.width_m * 2.0 * kPi);
+  if (predicted.empty()) return anywhere;
+  const Eigen::Vector3d beside(params_.beside_m, params_.beside_m, params_.beside_rad);
+  const Eigen::Matrix3d push = beside.cwiseAbs2().asDiagonal();
+  double density = params_.kidnapped * anywhere;
+  for (Hypothesis hypothesis : predicted)
+    for (int half = 0; half < 2; ++half) {
+      const Eigen::Vector3d off = difference(pose, hypothesis.pose);
+      density += params_.beside * hypothesis.own_weight() *
+                 std::exp(log_normal_density(off, hypothesis.covariance + push));
+      hypothesis.half_turn();
+    }
+  return density;
+}
+
+/// The hypothesis that stands for a pose.
+FieldTracker::Hypothesis* FieldTracker::known_place(const Pose2& pose) {
+  const auto known =
+      std::find_if(hypotheses_.begin(), hypotheses_.end(),
+                   [&](const Hypothesis& other) { return same_hypothesis(other.pose, pose); });
+  return known == hypotheses_.end() ? nullptr : &*known;
+}
+
+void FieldTracker::add_matches(const FieldScan& scan, const std::vector<StraightGroup>& groups,
+                               const Matches& matches, const std::vector<Hypothesis>& predicted) {
+  FieldRefineParams fixed;
+  fixed.clutter = clutter_;
+  const bool twins = model_->lines_symmetric();
+  for (const auto& suggestion : twins ? without_twins(matches) : matches) {
     const FieldFix fix =
         refine_field_pose(*model_, scan.points, suggestion.fix.pose, std::nullopt, fixed);
     if (fix.status == FieldFixStatus::degenerate) continue;
-    hypotheses_.push_back({fix.pose, fix.covariance,
-                           log_prior + log_evidence_of(*model_, scan, groups, fix, clutter_)});
+    const double here = prior_density(fix.pose, predicted);
+    const double there = twins ? prior_density(FieldModel::half_turned(fix.pose), predicted) : 0.0;
+    Hypothesis found{fix.pose, fix.covariance, std::log(here + there), there / (here + there)};
+    found.log_weight +=
+        log_evidence_of(*model_, scan, groups, fix, clutter_) + weigh_sightings(scan, found);
+    if (twins && found.turned > 0.5) found.half_turn();
+    Hypothesis* known = known_place(found.pose);
+    if (known == nullptr && twins) {
+      found.half_turn();
+      known = known_place(found.pose);
+      if (known == nullptr) found.half_turn();
+    }
+    if (known == nullptr)
+      hypotheses_.push_back(found);
+    else if (found.log_weight > known->log_weight)
+      *known = found;
   }
 }
 
@@ -124,7 +175,9 @@ void FieldTracker::merge_and_prune() {
     if (kept.size() >= static_cast<std::size_t>(params_.hypotheses)) break;
     if (!kept.empty() && hypothesis.log_weight < kept.front().log_weight - kForgotten) break;
     const bool double_of_another = std::any_of(kept.begin(), kept.end(), [&](const auto& other) {
-      return same_hypothesis(other.pose, hypothesis.pose);
+      return same_hypothesis(other.pose, hypothesis.pose) ||
+             (model_->lines_symmetric() &&
+              same_hypothesis(other.pose, FieldModel::half_turned(hypothesis.pose)));
     });
     if (!double_of_another) kept.push_back(hypothesis);
   }
@@ -148,11 +201,17 @@ void FieldTracker::update(const FieldScan& scan) {
                      (evidence_has_fallen() && since_check_ >= 2);
   const std::vector<StraightGroup> groups = model_->groups_of(scan);
   const Matches matches = check ? matcher_.match(scan) : Matches{};
+  const std::vector<Hypothesis> predicted = hypotheses_;
+  if (check && model_->lines_symmetric())
+    for (Hypothesis& hypothesis : hypotheses_)
+      hypothesis.turned = std::max(hypothesis.turned, params_.kidnapped);
   refine_all(scan, groups, matches);
   if (check) {
-    add_matches(scan, groups, matches);
+    add_matches(scan, groups, matches, predicted);
     since_check_ = 0;
   }
+  for (Hypothesis& hypothesis : hypotheses_)
+    if (hypothesis.turned > 0.5) hypothesis.half_turn();
   merge_and_prune();
   refresh_belief();
   if (hypotheses_.empty()) return;
@@ -165,10 +224,13 @@ void FieldTracker::update(const FieldScan& scan) {
 }
 
 double FieldTracker::doubt() const {
-  if (hypotheses_.empty()) return 1.0;
   double sum = 0.0;
-  for (const Hypothesis& hypothesis : hypotheses_) sum += std::exp(hypothesis.log_weight);
-  return 1.0 - std::exp(hypotheses_.front().log_weight) / sum;
+  double best = 0.0;
+  for (const Hypothesis& hypothesis : hypotheses_) {
+    sum += std::exp(hypothesis.log_weight);
+    best = std::max(best, hypothesis.own_weight());
+  }
+  return hypotheses_.empty() ? 1.0 : 1.0 - best / sum;
 }
 
 void FieldTracker::refresh_belief() {
@@ -183,15 +245,26 @@ void FieldTracker::refresh_belief() {
                              .asDiagonal();
     return;
   }
-  belief_.pose = hypotheses_.front().pose;
-  belief_.covariance = hypotheses_.front().covariance;
+  const auto best = std::max_element(
+      hypotheses_.begin(), hypotheses_.end(),
+      [](const Hypothesis& a, const Hypothesis& b) { return a.own_weight() < b.own_weight(); });
+  belief_.pose = best->pose;
+  belief_.covariance = best->covariance;
   const double weight = 1.0 - doubt();
   if (belief_.position_sigma() > params_.lost_sigma_m || weight < 0.3) return;
   belief_.status = weight >= params_.sure ? BeliefStatus::tracking : BeliefStatus::ambiguous;
   if (belief_.status != BeliefStatus::ambiguous) return;
-  for (const Hypothesis& hypothesis : hypotheses_)
-    belief_.hypotheses.push_back(
-        {hypothesis.pose, hypothesis.covariance, weight * std::exp(hypothesis.log_weight)});
+  double sum = 0.0;
+  for (const Hypothesis& hypothesis : hypotheses_) sum += std::exp(hypothesis.log_weight);
+  for (Hypothesis hypothesis : hypotheses_)
+    for (int half = 0; half < 2; ++half) {
+      if (hypothesis.own_weight() > kForgottenWeight * sum)
+        belief_.hypotheses.push_back(
+            {hypothesis.pose, hypothesis.covariance, hypothesis.own_weight() / sum});
+      hypothesis.half_turn();
+    }
+  std::stable_sort(belief_.hypotheses.begin(), belief_.hypotheses.end(),
+                   [](const auto& a, const auto& b) { return a.weight > b.weight; });
 }
 
 }  // namespace vigia::localization

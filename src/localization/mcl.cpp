@@ -12,6 +12,7 @@
 
 #include "vigia/core/angle.hpp"
 #include "vigia/core/plane_geometry.hpp"
+#include "vigia/localization/normal_density.hpp"
 
 namespace vigia::localization {
 namespace {
@@ -30,13 +31,6 @@ constexpr double kDepleted = 15.0;       // effective particles
 constexpr double kForgottenTwin = 1e-6;  // weight
 constexpr double kTurnedShare = 0.6;     // of a cluster's weight that is half a turn away
 constexpr double kUsualFall = 15.0;  // of the log-likelihood below its long-term mean, by chance
-
-double log_gaussian(const Eigen::Vector3d& off, const Eigen::Matrix3d& covariance) {
-  const Eigen::LLT<Eigen::Matrix3d> llt(covariance);
-  const Eigen::Vector3d white = llt.matrixL().solve(off);
-  const double log_root = llt.matrixLLT().diagonal().array().log().sum();
-  return -0.5 * white.squaredNorm() - log_root - 1.5 * std::log(2.0 * kPi);
-}
 
 /// (x, y, θ) turned by an angle.
 Eigen::Matrix3d in_frame(double theta) {
@@ -201,19 +195,6 @@ void half_turn(Particle& particle) {
   particle.twin = 1.0 - particle.twin;
 }
 
-/// The suggestions, of two that are half a turn apart the better.
-std::vector<FieldMatcher::Suggestion> without_twins(
-    const std::vector<FieldMatcher::Suggestion>& suggestions) {
-  std::vector<FieldMatcher::Suggestion> kept;
-  for (const auto& suggestion : suggestions) {
-    const Pose2 twin = FieldModel::half_turned(suggestion.fix.pose);
-    const bool known = std::any_of(
-        kept.begin(), kept.end(), [&](const auto& other) { return belongs(other.fix.pose, twin); });
-    if (!known) kept.push_back(suggestion);
-  }
-  return kept;
-}
-
 /// A pose that an image suggests by itself.
 struct SuggestedPose {
   Pose2 pose;
@@ -240,8 +221,8 @@ class InformedNoise {
     const Pose2 mean = Pose2::from_vector(at.vector() + gain_ * innovation);
     const Pose2 drawn = sample_about(mean, root_, random);
     // N(x'; x, Q) / q(x') = N(z; x, Q + R) / N(x'; z, R).
-    log_weight = log_gaussian(innovation, sum_) -
-                 log_gaussian(difference(drawn, suggested_), suggested_covariance_);
+    log_weight = log_normal_density(innovation, sum_) -
+                 log_normal_density(difference(drawn, suggested_), suggested_covariance_);
     return drawn;
   }
 
@@ -349,15 +330,9 @@ Mcl::Spread Mcl::spread_of_all() const {
 }
 
 double Mcl::log_weight_of_sightings(const FieldScan& scan, Particle& particle) const {
-  const double here = model_->log_likelihood_of_sightings(scan, particle.pose);
-  if (particle.twin == 0.0) return here;
-  const double there =
-      model_->log_likelihood_of_sightings(scan, FieldModel::half_turned(particle.pose));
-  const double higher = std::max(here, there);
-  const double own = (1.0 - particle.twin) * std::exp(here - higher);
-  const double twin = particle.twin * std::exp(there - higher);
-  particle.twin = twin / (own + twin);
-  return higher + std::log(own + twin);
+  const FieldModel::EitherHalf either = model_->weigh_halves(scan, particle.pose, particle.twin);
+  particle.twin = either.turned;
+  return either.log_likelihood;
 }
 
 double Mcl::log_weight(const FieldScan& scan, Particle& particle) const {
@@ -402,7 +377,7 @@ std::vector<PoseHypothesis> Mcl::predicted_hypotheses() const {
 double Mcl::MixturePrior::density(const Pose2& pose) const {
   double sum = anywhere;
   for (const PoseHypothesis& one : known)
-    sum += one.weight * std::exp(log_gaussian(difference(pose, one.pose), one.covariance));
+    sum += one.weight * std::exp(log_normal_density(difference(pose, one.pose), one.covariance));
   return sum;
 }
 
@@ -412,7 +387,7 @@ void Mcl::inject_about(const FieldFix& fix, int count, const MixturePrior& prior
   const Eigen::Matrix3d root = wide.llt().matrixL();
   for (int i = 0; i < count; ++i) {
     const Pose2 pose = sample_about(fix.pose, root, random_);
-    const double log_proposal = log_gaussian(difference(pose, fix.pose), wide);
+    const double log_proposal = log_normal_density(difference(pose, fix.pose), wide);
     const double here = prior.density(pose);
     const double there =
         model_->lines_symmetric() ? prior.density(FieldModel::half_turned(pose)) : 0.0;
@@ -575,7 +550,7 @@ std::vector<PoseHypothesis> Mcl::hypotheses() const {
   std::vector<PoseHypothesis> twins = clusters.all;
   for (PoseHypothesis& twin : twins) {
     twin.pose = FieldModel::half_turned(twin.pose);
-    twin.covariance = turned(twin.covariance, kPi);
+    twin.covariance = FieldModel::half_turned(twin.covariance);
     twin.weight = 0.0;
   }
   for (std::size_t i = 0; i < particles_.size(); ++i) {

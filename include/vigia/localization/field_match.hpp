@@ -62,4 +62,8 @@ class FieldMatcher {
   std::vector<ScoreImage> images_;
 };
 
+/// The suggestions, of two that are half a turn apart the better.
+std::vector<FieldMatcher::Suggestion> without_twins(
+    const std::vector<FieldMatcher::Suggestion>& suggestions);
+
 }  // namespace vigia::localization

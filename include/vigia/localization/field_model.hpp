@@ -86,6 +86,13 @@ class FieldModel {
 
   /// x, y, θ turned by half a turn about the field's centre.
   static Pose2 half_turned(const Pose2& pose);
+  static Eigen::Matrix3d half_turned(const Eigen::Matrix3d& covariance);
+  /// A pose that is half a turn away with probability @p turned: what the sightings say of it.
+  struct EitherHalf {
+    double log_likelihood;
+    double turned;  ///< the probability, given them
+  };
+  EitherHalf weigh_halves(const FieldScan& scan, const Pose2& pose, double turned) const;
 
  private:
   double clutter_density(double clutter) const;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -17,6 +18,11 @@ struct FieldTrackerParams {
   int check_every = 10;
   /// Prior probability of a kidnapping between two checks.
   double kidnapped = 1e-6;
+  /// Prior probability that by then the robot is beside where a hypothesis has it, by more than its
+  /// covariance says: errors that all points of a scan share, or a push.
+  double beside = 0.01;
+  double beside_m = 0.3;  ///< σ of it
+  double beside_rad = 0.1;
   /// A hypothesis is believed alone from this weight on.
   double sure = 0.99;
   int hypotheses = 10;  ///< kept, at most
@@ -25,8 +31,11 @@ struct FieldTrackerParams {
 
 /// Refined matches followed in time: Gaussian hypotheses with weights. Odometry moves each, a scan
 /// refines each with its prediction as prior and weighs it by its evidence; a global match of the
-/// present image, now and then and at once when the evidence falls, adds hypotheses whose prior is
-/// uniform. Weights are what Bayes' rule gives, so that a belief can say how sure it is.
+/// present image, now and then and at once when the evidence falls, adds hypotheses. Their prior is
+/// uniform but for a share about the hypotheses at hand. Where half a turn changes no line, points
+/// never tell a pose from its twin: a hypothesis stands for both, with a probability that only
+/// goals and posts change. Weights are what Bayes' rule gives, so that a belief can say how sure it
+/// is.
 class FieldTracker {
  public:
   FieldTracker(const FieldModel& model, const FieldTrackerParams& params);
@@ -45,15 +54,22 @@ class FieldTracker {
   struct Hypothesis {
     Pose2 pose;
     Eigen::Matrix3d covariance;
-    double log_weight = 0.0;
+    double log_weight = 0.0;  ///< of the pose and its twin together
+    double turned = 0.0;      ///< probability that the robot is half a turn away instead
+
+    double own_weight() const { return (1.0 - turned) * std::exp(log_weight); }
+    void half_turn();
   };
   using Matches = std::vector<FieldMatcher::Suggestion>;
   void refine_all(const FieldScan& scan, const std::vector<StraightGroup>& groups,
                   const Matches& matches);
+  double prior_density(const Pose2& pose, const std::vector<Hypothesis>& predicted) const;
+  double weigh_sightings(const FieldScan& scan, Hypothesis& hypothesis) const;
   void add_matches(const FieldScan& scan, const std::vector<StraightGroup>& groups,
-                   const Matches& matches);
+                   const Matches& matches, const std::vector<Hypothesis>& predicted);
   bool evidence_has_fallen() const;
   void merge_and_prune();
+  Hypothesis* known_place(const Pose2& pose);
   void refresh_belief();
 
   const FieldModel* model_;
