@@ -11,36 +11,41 @@ namespace {
 
 using imaging::Window;
 
-/// Pixels round the image of the box that holds a limb; the whole frame when part of it is behind
-/// the camera.
-Window image_box(const BodyPart& part, const Eigen::Isometry3d& cMw, const CameraModel& model) {
-  const Window frame{0, 0, image_width(model), image_height(model)};
-  const double nearest_z = is_perspective(model) ? 0.05 : -1e9;
+/// The corners of the box that holds a limb, in frame c.
+std::array<Eigen::Vector3d, 8> box_corners(const BodyPart& part, const Eigen::Isometry3d& cMw) {
   const Eigen::Matrix3d to_world = part.A.inverse();
   const double across = part.round ? 1.0 : 1.0 + std::max(0.0, part.taper);
+  std::array<Eigen::Vector3d, 8> corners;
+  for (unsigned i = 0; i < 8; ++i) {
+    const Eigen::Vector3d q((i & 1U) != 0 ? across : -across, (i & 2U) != 0 ? across : -across,
+                            (i & 4U) != 0 ? 1.0 : (part.round ? -1.0 : 0.0));
+    corners[i] = cMw * (part.c + to_world * q);
+  }
+  return corners;
+}
+
+/// Pixels round the image of the box that holds a limb; the whole frame when part of it is behind
+/// the camera, or the camera's picture is not perspective: there the box bulges.
+Window image_box(const BodyPart& part, const Eigen::Isometry3d& cMw, const CameraModel& model) {
+  const Window frame{0, 0, image_width(model), image_height(model)};
+  if (!is_perspective(model)) return frame;
+  constexpr double kNearest_m = 0.05;
   double u0 = 1e9;
   double v0 = 1e9;
   double u1 = -1e9;
   double v1 = -1e9;
   int behind = 0;
-  int unseen = 0;  // beyond a mirror's edge
-  for (int i = 0; i < 8; ++i) {
-    const Eigen::Vector3d q((i & 1) != 0 ? across : -across, (i & 2) != 0 ? across : -across,
-                            (i & 4) != 0 ? 1.0 : (part.round ? -1.0 : 0.0));
-    const Eigen::Vector3d p_c = cMw * (part.c + to_world * q);
-    if (p_c.z() < nearest_z) ++behind;
+  for (const Eigen::Vector3d& p_c : box_corners(part, cMw)) {
+    if (p_c.z() < kNearest_m) ++behind;
     const auto uv = project(model, p_c);
-    if (!uv) {
-      if (!is_perspective(model)) ++unseen;
-      continue;
-    }
+    if (!uv) continue;
     u0 = std::min(u0, uv->x());
     v0 = std::min(v0, uv->y());
     u1 = std::max(u1, uv->x());
     v1 = std::max(v1, uv->y());
   }
-  if (behind == 8 || unseen == 8) return {};
-  if (behind > 0 || unseen > 0 || u1 < u0) return frame;
+  if (behind == 8) return {};
+  if (behind > 0 || u1 < u0) return frame;
   const auto bounded = [](double pixel) { return std::clamp(pixel, -1e6, 1e6); };
   const double margin = 3.0 + 0.02 * std::max(u1 - u0, v1 - v0);  // the lens bends the edges
   const int left = static_cast<int>(std::floor(bounded(u0 - margin)));
@@ -134,7 +139,23 @@ BodyPartView::BodyPartView(const BodyPart& part, const Eigen::Isometry3d& wMc,
                  part.grey,
                  part.pattern},
       tint_(part.tint),
-      box_(image_box(part, wMc.inverse(Eigen::Isometry), model)) {}
+      box_(image_box(part, wMc.inverse(Eigen::Isometry), model)) {
+  if (!is_perspective(model)) enclose(part, wMc.inverse(Eigen::Isometry));
+}
+
+void BodyPartView::enclose(const BodyPart& part, const Eigen::Isometry3d& cMw) {
+  constexpr double kSlack = 1e-4;  // of single precision
+  const std::array<Eigen::Vector3d, 8> corners = box_corners(part, cMw);
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& corner : corners) middle += corner / 8.0;
+  double radius = 0.0;
+  for (const Eigen::Vector3d& corner : corners) radius = std::max(radius, (corner - middle).norm());
+  const double sine = radius / middle.norm();
+  if (!(sine < 1.0)) return;
+  const Eigen::Vector3f axis = middle.normalized().cast<float>();
+  middle_ = {axis.x(), axis.y(), axis.z()};
+  cos_radius_ = static_cast<float>(std::sqrt(1.0 - sine * sine) - kSlack);
+}
 
 void BodyPartView::paint(const Rays& rays, int count, float* nearest, float* grey,
                          unsigned char* hit) const {

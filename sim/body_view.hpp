@@ -1,6 +1,7 @@
 #pragma once
 
 #include "rays.hpp"
+#include "surface.hpp"
 
 #include <array>
 #include <vector>
@@ -34,8 +35,11 @@ class BodyPartView {
  public:
   BodyPartView(const BodyPart& part, const Eigen::Isometry3d& wMc, const CameraModel& model);
 
-  /// Whole pixels round the image, clipped to the frame; may be empty.
+  /// Whole pixels round the image in a perspective picture, clipped to the frame; may be empty. In
+  /// any other picture the frame.
   const imaging::Window& box() const { return box_; }
+  /// Whether a ray of the box may come near enough to meet it.
+  bool may_meet(const RayBox& box) const { return maximum(middle_, box) >= cos_radius_; }
   const std::array<float, 3>& tint() const { return tint_; }
 
   /// Where rays meet the limb nearer than inverse depth nearest[i]: takes nearest[i],
@@ -61,7 +65,12 @@ class BodyPartView {
   static void paint_any(const Constants& constants, const Rays& rays, int count, float* nearest,
                         float* grey, unsigned char* hit);
 
+  /// Of a cone of unit rays that holds it: its axis, and the cosine of its opening.
+  void enclose(const BodyPart& part, const Eigen::Isometry3d& cMw);
+
   Constants constants_;
+  Linear middle_;
+  float cos_radius_ = -2.0F;  ///< every ray
   std::array<float, 3> tint_;
   imaging::Window box_;
 };

@@ -220,14 +220,17 @@ FieldPaintView::FieldPaintView(const FieldPaint& paint, const Eigen::Isometry3d&
   }
 }
 
-void FieldPaintView::coverage(int u, int v, int count, const Rays& rays, const ViewId* winner,
-                              ViewId surface, float* share) const {
-  std::fill_n(share, count, 0.0F);
-  for (int i = 0; i < count; ++i) {
-    if (winner[i] != surface) continue;
-    const Eigen::Vector3f ray(rays.x[i], rays.y[i], rays.z == nullptr ? 1.0F : rays.z[i]);
-    Pixel pixel = pixel_at(u + i, v, ray);
-    if (pixel.w > 0.0F) share[i] = share_of(pixel);
+void FieldPaintView::coverage(PixelRow& row, ViewId surface) const {
+  const Rays rays = row.rays();
+  std::size_t i = 0;
+  for (const Piece& piece : row.pieces) {
+    for (int u = piece.u; u < piece.u + piece.count; ++u, ++i) {
+      row.paint[i] = 0.0F;
+      if (row.winner[i] != surface) continue;
+      const Eigen::Vector3f ray(rays.x[i], rays.y[i], rays.z == nullptr ? 1.0F : rays.z[i]);
+      Pixel pixel = pixel_at(u, piece.v, ray);
+      if (pixel.w > 0.0F) row.paint[i] = share_of(pixel);
+    }
   }
 }
 

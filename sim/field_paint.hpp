@@ -1,7 +1,6 @@
 #pragma once
 
-#include "rays.hpp"
-#include "surface.hpp"
+#include "pixel_row.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -41,9 +40,8 @@ class FieldPaintView {
   FieldPaintView(const FieldPaint& paint, const Eigen::Isometry3d& cMw, const CameraModel& model,
                  double blur_px);
 
-  /// Share of paint of @p count pixels from (u, v) on, where winner[i] is @p surface; 0 elsewhere.
-  void coverage(int u, int v, int count, const Rays& rays, const ViewId* winner, ViewId surface,
-                float* share) const;
+  /// The share of paint of the row's pixels whose winner is @p surface; 0 elsewhere.
+  void coverage(PixelRow& row, ViewId surface) const;
 
  private:
   /// What of a line is the same for every pixel.

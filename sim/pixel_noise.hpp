@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "vigia/core/shot.hpp"
 
@@ -16,7 +17,15 @@ class PixelNoise {
   void add_and_round(const float* value, float sigma, int u, int v, int channel, int count,
                      unsigned char* out) const;
 
+  /// What the numbers of a channel's rows follow from, for the same of pixels (u[i], v[i]).
+  std::vector<std::uint32_t> row_keys(int channel, int rows) const;
+  static void add_and_round(const float* value, float sigma, const std::uint32_t* row_keys,
+                            const std::int32_t* u, const std::int32_t* v, int count,
+                            unsigned char* out);
+
  private:
+  std::uint32_t row_key(int channel, int v) const;
+
   std::uint64_t key_;
 };
 

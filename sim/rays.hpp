@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "vigia/core/camera_model.hpp"
 
@@ -24,6 +25,10 @@ inline bool is_perspective(const CameraModel& model) {
 /// Rays of @p count pixels of row @p v from column @p u on, through the lens. @p z is not touched
 /// for a perspective camera.
 void row_rays(const CameraModel& model, int u, int v, int count, float* x, float* y, float* z);
+
+/// The same of pixels (u[i], v[i]) of a camera that is not perspective.
+void pixel_rays(const UnifiedOmni& model, const std::int32_t* u, const std::int32_t* v, int count,
+                float* x, float* y, float* z);
 
 /// The ray of any point of the image, as row_rays() has it; zero where it shows nothing.
 Eigen::Vector3d point_ray(const CameraModel& model, const Eigen::Vector2d& uv);

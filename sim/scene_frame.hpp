@@ -3,7 +3,10 @@
 #include "blurred_frame.hpp"
 #include "pixel_noise.hpp"
 #include "scene_view.hpp"
+#include "tile_batches.hpp"
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -31,15 +34,23 @@ class SceneFrame : public imaging::Frame, public Radiance {
 
  private:
   SceneView& view() const;
-  void grey_row(const imaging::Run& run, PixelRow& row, unsigned char* out) const;
-  /// Room for a channel of a row.
+  /// Calls use(row) with what is asked for, in batches of pixels that are computed together.
+  template <typename Use>
+  void for_each_batch(const imaging::Window& window, std::ptrdiff_t stride, const Use& use) const;
+  template <typename Use>
+  void for_each_batch(const std::vector<imaging::Run>& runs, const Use& use) const;
+  template <typename Use>
+  void for_each_tile(const TileBatches& batches, const Use& use) const;
+
+  /// Room for a channel of a batch.
   struct ChannelRow {
-    explicit ChannelRow(int count)
-        : levels(static_cast<std::size_t>(count)), bytes(levels.size()) {}
+    explicit ChannelRow(std::size_t most) : levels(most), bytes(most) {}
     std::vector<float> levels;
     std::vector<unsigned char> bytes;
   };
-  void colour_row(const imaging::Run& run, PixelRow& row, ChannelRow& channel, vpRGBa* out) const;
+  void expose_grey(PixelRow& row, ChannelRow& room, unsigned char* out) const;
+  void expose_colour(PixelRow& row, ChannelRow& room, vpRGBa* out) const;
+  void add_noise(const PixelRow& row, int channel, const float* levels, unsigned char* bytes) const;
 
   const SceneContent& content_;
   Exposure::Instant instant_;
@@ -48,6 +59,7 @@ class SceneFrame : public imaging::Frame, public Radiance {
   PixelNoise noise_;
   ImagingParams params_;
   mutable std::optional<SceneView> view_;
+  mutable std::array<std::vector<std::uint32_t>, 3> row_keys_;  ///< of the channels' noise
 };
 
 }  // namespace vigia::sim

@@ -38,33 +38,22 @@ SceneView::SceneView(const SceneContent& content, const Exposure::Instant& insta
       wMc_(instant.wMc),
       model_(model),
       blur_px_(params.blur_px),
+      limbs_(wMc_, model_),
       tiles_(model_, params.blur_px) {
   const Eigen::Isometry3d cMw = wMc_.inverse(Eigen::Isometry);
   find_surfaces(cMw);
   find_marks(cMw);
   if (light) light_.emplace(*light, cMw);
-  find_limbs(content_.solids);
-  for (const Person& person : instant.people) find_limbs(body_parts(person));
+  limbs_.add(content_.solids);
+  for (const Person& person : instant.people) limbs_.add(body_parts(person));
   if (content_.field && view_of_surface_[content_.field->carpet] >= 0 && wMc_.translation().z() > 0)
     field_.emplace(content_.field->paint, cMw, model_, params.blur_px);
 }
 
-PixelRow SceneView::row_of(int count) const {
-  PixelRow row(count, is_perspective(model_));
-  if (field_) row.paint.resize(static_cast<std::size_t>(count));
+PixelRow SceneView::row_of(int most) const {
+  PixelRow row(most, is_perspective(model_));
+  if (field_) row.paint.resize(static_cast<std::size_t>(most));
   return row;
-}
-
-void SceneView::find_limbs(const std::vector<BodyPart>& parts) {
-  const int rows = (image_height(model_) + kTile - 1) / kTile;
-  limbs_of_rows_.resize(static_cast<std::size_t>(rows));
-  for (const BodyPart& part : parts) {
-    const BodyPartView view(part, wMc_, model_);
-    if (view.box().empty()) continue;
-    for (int row = view.box().v / kTile; row <= (view.box().bottom() - 1) / kTile; ++row)
-      limbs_of_rows_[static_cast<std::size_t>(row)].push_back(limbs_.size());
-    limbs_.push_back(view);
-  }
 }
 
 void SceneView::find_surfaces(const Eigen::Isometry3d& cMw) {
@@ -107,14 +96,28 @@ void SceneView::find_marks(const Eigen::Isometry3d& cMw) {
   }
 }
 
-void SceneView::see(int u, int v, int count, PixelRow& row) {
-  see_surfaces(u, v, count, row);
-  see_solids(u, v, count, row);
-  see_field(u, v, count, row);
+void SceneView::see(PixelRow& row) {
+  see_surfaces(row);
+  see_solids(row);
+  see_field(row);
 }
 
-void SceneView::see_surfaces(int u, int v, int count, PixelRow& row) {
-  row_rays(model_, u, v, count, row.x.data(), row.y.data(), row.z.data());
+void SceneView::see_surfaces(PixelRow& row) {
+  const Piece& first = row.pieces.front();
+  if (const auto* mirror = std::get_if<UnifiedOmni>(&model_)) {
+    pixel_rays(*mirror, row.u.data(), row.v.data(), row.count, row.x.data(), row.y.data(),
+               row.z.data());
+    see_tile(tiles_.tile_of(first.u, first.v, surfaces_, stripes_), 0, row.count, row);
+    return;
+  }
+  row_rays(model_, first.u, first.v, first.count, row.x.data(), row.y.data(), row.z.data());
+  see_row_of_tiles(first, row);
+}
+
+void SceneView::see_row_of_tiles(const Piece& piece, PixelRow& row) {
+  const int u = piece.u;
+  const int v = piece.v;
+  const int count = piece.count;
   if (u / kTile == (u + count - 1) / kTile) {
     see_tile(*tiles_.row(u, u + count, v / kTile * kTile, surfaces_, stripes_).front(), 0, count,
              row);
@@ -164,38 +167,45 @@ void SceneView::see_nearest(const Tile& tile, int first, int length, PixelRow& r
 }
 
 /// Limbs that stand before what is painted already, and hide what hangs on it.
-void SceneView::see_solids(int u, int v, int count, PixelRow& row) const {
-  for (const std::size_t id : limbs_of_rows_[static_cast<std::size_t>(v / kTile)]) {
+void SceneView::see_solids(PixelRow& row) {
+  if (limbs_.empty()) return;
+  const Piece& first = row.pieces.front();
+  for (const ViewId id : limbs_.near(first.u, first.v)) {
     const BodyPartView& limb = limbs_[id];
-    const Window& box = limb.box();
-    const int from = std::max(u, box.u);
-    const int n = std::min(u + count, box.right()) - from;
-    if (v < box.v || v >= box.bottom() || n <= 0) continue;
-    const auto at = static_cast<std::size_t>(from - u);
-    std::fill_n(row.hit.data() + at, n, static_cast<unsigned char>(0));
-    limb.paint(row.rays().from(from - u), n, row.depth.data() + at, row.grey.data() + at,
+    int from = 0;
+    int end = row.count;
+    if (is_perspective(model_)) {
+      const Window& box = limb.box();
+      if (first.v < box.v || first.v >= box.bottom()) continue;
+      from = std::max(first.u, box.u) - first.u;
+      end = std::min(first.u + first.count, box.right()) - first.u;
+    }
+    if (end <= from) continue;
+    const auto at = static_cast<std::size_t>(from);
+    std::fill_n(row.hit.data() + at, end - from, static_cast<unsigned char>(0));
+    limb.paint(row.rays().from(from), end - from, row.depth.data() + at, row.grey.data() + at,
                row.hit.data() + at);
-    for (std::size_t i = at; i < at + static_cast<std::size_t>(n); ++i)
+    for (std::size_t i = at; i < static_cast<std::size_t>(end); ++i)
       if (row.hit[i] != 0) row.winner[i] = static_cast<ViewId>(kFirstLimb + id);
   }
 }
 
-void SceneView::see_field(int u, int v, int count, PixelRow& row) const {
+void SceneView::see_field(PixelRow& row) const {
   if (!field_) return;
   const int carpet = view_of_surface_[content_.field->carpet];
-  field_->coverage(u, v, count, row.rays(), row.winner.data(), static_cast<ViewId>(carpet),
-                   row.paint.data());
+  field_->coverage(row, static_cast<ViewId>(carpet));
 }
 
-void SceneView::expose(int u, int v, int count, PixelRow& row, int channel, float* levels) {
-  tint(row, count, channel, levels);
-  paint_stripes(u, v, count, row, channel, levels);
-  paint_field(count, row, channel, levels);
-  paint_decals(u, v, count, row, channel, levels);
-  shine(row, count, levels);
+void SceneView::expose(PixelRow& row, int channel, float* levels) {
+  tint(row, channel, levels);
+  paint_stripes(row, channel, levels);
+  paint_field(row, channel, levels);
+  paint_decals(row, channel, levels);
+  shine(row, levels);
 }
 
-void SceneView::tint(const PixelRow& row, int count, int channel, float* levels) const {
+void SceneView::tint(const PixelRow& row, int channel, float* levels) const {
+  const int count = row.count;
   if (channel == kGrey) {
     if (levels != row.grey.data()) std::copy_n(row.grey.data(), count, levels);
     return;
@@ -213,41 +223,51 @@ const std::array<float, 3>& SceneView::tint_of(ViewId winner) const {
   return winner == kNothing ? kUntinted : limbs_[winner - kFirstLimb].tint();
 }
 
-void SceneView::paint_field(int count, PixelRow& row, int channel, float* levels) const {
+void SceneView::paint_field(PixelRow& row, int channel, float* levels) const {
   if (!field_) return;
   const Ink& ink = content_.field->ink;
   const float of_channel = channel == kGrey ? 1.0F : ink.tint[static_cast<std::size_t>(channel)];
-  mix_in(row.paint.data(), ink.grey * of_channel, count, levels);
+  mix_in(row.paint.data(), ink.grey * of_channel, row.count, levels);
 }
 
-void SceneView::paint_stripes(int u, int v, int count, PixelRow& row, int channel, float* levels) {
+void SceneView::paint_stripes(PixelRow& row, int channel, float* levels) {
   if (stripes_.empty()) return;
-  int tile_u = u / kTile * kTile;
-  for (const Tile* tile : tiles_.row(u, u + count, v / kTile * kTile, surfaces_, stripes_)) {
-    const int from = std::max(u, tile_u);
-    const int n = std::min(u + count, tile_u + kTile) - from;
-    for (std::size_t i = 0; i < tile->patch_count; ++i) {
-      const StripePatch& patch = tiles_.patches_of(*tile)[i];
-      std::copy_n(patch.share.data() + (v % kTile) * kTile + (from - tile_u), n,
-                  row.other.data() + (from - u));
-      const StripeMark& mark = patch.stripe->mark();
-      mix(mark.surface, mark.tint, mark.grey, channel, from - u, n, row, levels);
+  int at = 0;
+  for (const Piece& piece : row.pieces) {
+    const int u = piece.u;
+    const int v = piece.v;
+    int tile_u = u / kTile * kTile;
+    for (const Tile* tile :
+         tiles_.row(u, u + piece.count, v / kTile * kTile, surfaces_, stripes_)) {
+      const int from = std::max(u, tile_u);
+      const int n = std::min(u + piece.count, tile_u + kTile) - from;
+      for (std::size_t i = 0; i < tile->patch_count; ++i) {
+        const StripePatch& patch = tiles_.patches_of(*tile)[i];
+        std::copy_n(patch.share.data() + (v % kTile) * kTile + (from - tile_u), n,
+                    row.other.data() + at + (from - u));
+        const StripeMark& mark = patch.stripe->mark();
+        mix(mark.surface, mark.tint, mark.grey, channel, at + from - u, n, row, levels);
+      }
+      tile_u += kTile;
     }
-    tile_u += kTile;
+    at += piece.count;
   }
 }
 
-void SceneView::paint_decals(int u, int v, int count, PixelRow& row, int channel, float* levels) {
+void SceneView::paint_decals(PixelRow& row, int channel, float* levels) {
   for (DecalView& view : decals_) {
     const Window& box = view.box();
-    if (v < box.v || v >= box.bottom()) continue;
-    const int from = std::max(u, box.u);
-    const int n = std::min(u + count, box.right()) - from;
-    if (n <= 0) continue;
-    const int at = from - u;
-    view.coverage(from, v, n, row.rays().from(at), row.other.data() + at);
-    const Decal& decal = view.decal();
-    mix(decal.surface, decal.tint, decal.grey, channel, at, n, row, levels);
+    int first = 0;
+    for (const Piece& piece : row.pieces) {
+      const int from = std::max(piece.u, box.u);
+      const int n = std::min(piece.u + piece.count, box.right()) - from;
+      const int at = first + from - piece.u;
+      first += piece.count;
+      if (piece.v < box.v || piece.v >= box.bottom() || n <= 0) continue;
+      view.coverage(from, piece.v, n, row.rays().from(at), row.other.data() + at);
+      const Decal& decal = view.decal();
+      mix(decal.surface, decal.tint, decal.grey, channel, at, n, row, levels);
+    }
   }
 }
 
@@ -260,10 +280,10 @@ void SceneView::mix(std::size_t surface, const std::array<float, 3>& tint, float
   mix_in(row.other.data() + at, grey * of_channel, count, levels + at);
 }
 
-void SceneView::shine(const PixelRow& row, int count, float* levels) const {
+void SceneView::shine(const PixelRow& row, float* levels) const {
   if (content_.light != 1.0F)
-    for (int i = 0; i < count; ++i) levels[i] *= content_.light;
-  if (light_) light_->apply(row.rays(), row.depth.data(), count, levels);
+    for (int i = 0; i < row.count; ++i) levels[i] *= content_.light;
+  if (light_) light_->apply(row.rays(), row.depth.data(), row.count, levels);
 }
 
 }  // namespace vigia::sim

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "body_view.hpp"
 #include "decal.hpp"
 #include "light_rows.hpp"
+#include "limb_grid.hpp"
 #include "pixel_row.hpp"
 #include "scene_content.hpp"
 #include "tile_grid.hpp"
@@ -26,31 +26,31 @@ class SceneView {
             const std::optional<LightNow>& light, const CameraModel& model,
             const ImagingParams& params);
 
-  PixelRow row_of(int count) const;
-  /// Finds what @p count pixels of row @p v from @p u on show: rays, winner, depth, and the grey of
+  PixelRow row_of(int most) const;
+  /// Finds what the pixels that @p row has taken show: rays, winner, depth, and the grey of
   /// surfaces and solids.
-  void see(int u, int v, int count, PixelRow& row);
-  /// The levels of a channel (or of kGrey) of a row that see() has seen.
-  void expose(int u, int v, int count, PixelRow& row, int channel, float* levels);
+  void see(PixelRow& row);
+  /// The levels of a channel (or of kGrey) of pixels that see() has seen.
+  void expose(PixelRow& row, int channel, float* levels);
 
  private:
   void find_surfaces(const Eigen::Isometry3d& cMw);
   void find_marks(const Eigen::Isometry3d& cMw);
-  void find_limbs(const std::vector<BodyPart>& parts);
-  void see_surfaces(int u, int v, int count, PixelRow& row);
+  void see_surfaces(PixelRow& row);
+  void see_row_of_tiles(const Piece& piece, PixelRow& row);
   void see_tile(const Tile& tile, int first, int length, PixelRow& row);
   void see_one(ViewId id, int first, int length, PixelRow& row);
   void see_nearest(const Tile& tile, int first, int length, PixelRow& row);
-  void see_solids(int u, int v, int count, PixelRow& row) const;
-  void see_field(int u, int v, int count, PixelRow& row) const;
+  void see_solids(PixelRow& row);
+  void see_field(PixelRow& row) const;
   const std::array<float, 3>& tint_of(ViewId winner) const;
-  void tint(const PixelRow& row, int count, int channel, float* levels) const;
-  void paint_stripes(int u, int v, int count, PixelRow& row, int channel, float* levels);
-  void paint_field(int count, PixelRow& row, int channel, float* levels) const;
-  void paint_decals(int u, int v, int count, PixelRow& row, int channel, float* levels);
+  void tint(const PixelRow& row, int channel, float* levels) const;
+  void paint_stripes(PixelRow& row, int channel, float* levels);
+  void paint_field(PixelRow& row, int channel, float* levels) const;
+  void paint_decals(PixelRow& row, int channel, float* levels);
   void mix(std::size_t surface, const std::array<float, 3>& tint, float grey, int channel, int at,
            int count, PixelRow& row, float* levels) const;
-  void shine(const PixelRow& row, int count, float* levels) const;
+  void shine(const PixelRow& row, float* levels) const;
 
   const SceneContent& content_;
   Eigen::Isometry3d wMc_;
@@ -60,8 +60,7 @@ class SceneView {
   std::vector<int> view_of_surface_;
   std::vector<StripeView> stripes_;
   std::vector<DecalView> decals_;
-  std::vector<BodyPartView> limbs_;
-  std::vector<std::vector<std::size_t>> limbs_of_rows_;  ///< by kTile rows
+  LimbGrid limbs_;
   std::optional<FieldPaintView> field_;
   std::optional<LightRows> light_;
   TileGrid tiles_;

@@ -204,12 +204,20 @@ void evaluate_any(const Linear& f, const float* __restrict x, const float* __res
   for (int i = 0; i < count; ++i) out[i] = k.a * x[i] + k.b * y[i] + k.c * z[i];
 }
 
-/// The last direction that the mirror shows on the way from its axis to a pixel beyond its edge.
-Eigen::Vector3d edge_ray(const UnifiedOmni& omni, double u, double v) {
-  const Eigen::Vector2d out((u - omni.u0) / omni.px, (v - omni.v0) / omni.py);
-  const double z = min_z(omni);
-  const Eigen::Vector2d radial = std::sqrt(1.0 - z * z) * out.normalized();
-  return {radial.x(), radial.y(), z};
+/// The direction that a pixel at @p m of the normalised plane shows; beyond the mirror's edge the
+/// last one on the way there from its axis.
+struct MirrorDirection {
+  Eigen::Array3d direction;
+  bool seen;
+};
+
+MirrorDirection mirror_direction(double xi, double edge_z, const Eigen::Vector2d& m) {
+  const double r2 = m.squaredNorm();
+  const double root = 1.0 + (1.0 - xi * xi) * r2;
+  const double eta = (xi + std::sqrt(std::max(0.0, root))) / (1.0 + r2);
+  if (root >= 0.0 && eta - xi >= edge_z) return {{eta * m.x(), eta * m.y(), eta - xi}, true};
+  const double radial = std::sqrt((1.0 - edge_z * edge_z) / r2);
+  return {{radial * m.x(), radial * m.y(), edge_z}, false};
 }
 
 /// From nine samples. Between them a smooth direction strays from what they span by no more than
@@ -218,11 +226,12 @@ RayBox box_of_rays(const UnifiedOmni& omni, int u0, int u1, int v0, int v1) {
   Eigen::Array3d low = Eigen::Array3d::Constant(2.0);
   Eigen::Array3d high = -low;
   bool partial = false;
+  const double edge_z = min_z(omni);
   for (const double u : {1.0 * u0, 0.5 * (u0 + u1), 1.0 * u1}) {
     for (const double v : {1.0 * v0, 0.5 * (v0 + v1), 1.0 * v1}) {
-      const auto seen = ray(CameraModel{omni}, {u, v});
+      const auto [direction, seen] =
+          mirror_direction(omni.xi, edge_z, {(u - omni.u0) / omni.px, (v - omni.v0) / omni.py});
       partial = partial || !seen;
-      const Eigen::Array3d direction = seen.value_or(edge_ray(omni, u, v)).array();
       low = low.min(direction);
       high = high.max(direction);
     }

@@ -16,6 +16,10 @@ int tiles_in(int pixels) {
   return (pixels + kTile - 1) / kTile;
 }
 
+int blocks_in(int pixels) {
+  return (pixels + kBlock - 1) / kBlock;
+}
+
 }  // namespace
 
 TileGrid::TileGrid(const CameraModel& model, double blur_px)
@@ -23,7 +27,42 @@ TileGrid::TileGrid(const CameraModel& model, double blur_px)
       blur_px_(blur_px),
       columns_(tiles_in(image_width(model))),
       tiles_(static_cast<std::size_t>(columns_) *
-             static_cast<std::size_t>(tiles_in(image_height(model)))) {}
+             static_cast<std::size_t>(tiles_in(image_height(model)))),
+      blocks_(is_perspective(model)
+                  ? 0
+                  : static_cast<std::size_t>(blocks_in(image_width(model))) *
+                        static_cast<std::size_t>(blocks_in(image_height(model)))) {}
+
+const std::vector<ViewId>& TileGrid::every(const std::vector<SurfaceView>& views) {
+  if (every_.size() != views.size()) {
+    every_.resize(views.size());
+    std::iota(every_.begin(), every_.end(), ViewId{0});
+  }
+  return every_;
+}
+
+const std::vector<ViewId>& TileGrid::seen_in_block(int u, int v,
+                                                   const std::vector<SurfaceView>& views) {
+  Block& block =
+      blocks_[static_cast<std::size_t>(v / kBlock * blocks_in(image_width(*model_)) + u / kBlock)];
+  if (!block.known) {
+    const int left = u / kBlock * kBlock;
+    const int top = v / kBlock * kBlock;
+    bool pure = false;
+    visible_in(views, every(views),
+               ray_box(*model_, left, left + kBlock - 1, top, top + kBlock - 1), block.views, pure);
+    block.known = true;
+  }
+  return block.views;
+}
+
+const Tile& TileGrid::tile_of(int u, int v, const std::vector<SurfaceView>& views,
+                              const std::vector<StripeView>& stripes) {
+  Tile& tile = tiles_[static_cast<std::size_t>(v / kTile * columns_ + u / kTile)];
+  if (!tile.known)
+    compute(tile, u / kTile * kTile, v / kTile * kTile, seen_in_block(u, v, views), views, stripes);
+  return tile;
+}
 
 const std::vector<const Tile*>& TileGrid::row(int u, int u_end, int tile_v,
                                               const std::vector<SurfaceView>& views,
@@ -35,17 +74,13 @@ const std::vector<const Tile*>& TileGrid::row(int u, int u_end, int tile_v,
   if (row_first == row_first_ && row_.size() == static_cast<std::size_t>(count)) return row_;
   row_first_ = row_first;
   spans_.clear();
-  if (every_.size() != views.size()) {
-    every_.resize(views.size());
-    std::iota(every_.begin(), every_.end(), ViewId{0});
-  }
   const std::vector<ViewId>* among = nullptr;
   row_.clear();
   for (int column = first; column <= last; ++column) {
     Tile& tile = tiles_[static_cast<std::size_t>(row_first + column - first)];
     if (!tile.known) {
       if (among == nullptr) {
-        among = &every_;
+        among = &every(views);
         if (is_perspective(*model_) && last - first >= kFewTiles) {
           bool pure = false;
           visible_in(

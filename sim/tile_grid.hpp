@@ -10,6 +10,7 @@
 namespace vigia::sim {
 
 inline constexpr int kTile = 16;
+inline constexpr int kBlock = 4 * kTile;  ///< what a tile may see is found in a block of them first
 
 /// What one tile of a frame's grid sees: surfaces, and the stripes on them.
 struct Tile {
@@ -51,6 +52,10 @@ class TileGrid {
                                      const std::vector<SurfaceView>& views,
                                      const std::vector<StripeView>& stripes);
 
+  /// The tile of a picture that is not perspective that holds the pixel.
+  const Tile& tile_of(int u, int v, const std::vector<SurfaceView>& views,
+                      const std::vector<StripeView>& stripes);
+
   const ViewId* views_of(const Tile& tile) const { return view_pool_.data() + tile.first_view; }
   const StripePatch* patches_of(const Tile& tile) const {
     return patch_pool_.data() + tile.first_patch;
@@ -60,12 +65,19 @@ class TileGrid {
   bool same_views(const Tile& a, const Tile& b) const;
   void compute(Tile& tile, int u, int v, const std::vector<ViewId>& among,
                const std::vector<SurfaceView>& views, const std::vector<StripeView>& stripes);
+  const std::vector<ViewId>& every(const std::vector<SurfaceView>& views);
+  const std::vector<ViewId>& seen_in_block(int u, int v, const std::vector<SurfaceView>& views);
   void paint_stripes(Tile& tile, int u, int v, const std::vector<StripeView>& stripes);
 
   const CameraModel* model_ = nullptr;
   double blur_px_ = 0.0;
   int columns_ = 0;
   std::vector<Tile> tiles_;
+  struct Block {
+    bool known = false;
+    std::vector<ViewId> views;
+  };
+  std::vector<Block> blocks_;  ///< of a picture that is not perspective
   std::vector<ViewId> view_pool_;
   std::vector<StripePatch> patch_pool_;
   std::vector<const Tile*> row_;  ///< what was asked for last: the next row of pixels asks again
