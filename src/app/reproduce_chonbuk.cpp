@@ -139,8 +139,9 @@ void draw_errors(const ChonbukRun& run, const std::string& file, const std::stri
 void study_positions(const ChonbukRun& run) {
   const int count = run.lines(kLines);
   const double step = kLine_m / (kPositions - 1);
+  const double period_s = step / kSpeed_mps;
   const auto clean = drives_of(&ideal, count, step);
-  const auto clean_frames = read_ceiling_drives(clean, {}, run.options.threads);
+  const auto clean_frames = evaluation::read_ceiling_drives(clean, {}, run.options.threads);
   std::vector<CeilingEstimate> nearest;
   std::vector<CeilingEstimate> joint;
   for (std::size_t i = 0; i < clean.size(); ++i) {
@@ -152,7 +153,7 @@ void study_positions(const ChonbukRun& run) {
                     summarise_errors(joint), {}, {});
 
   const auto drives = drives_of(&disturbed, count, step);
-  const auto frames = read_ceiling_drives(drives, {}, run.options.threads);
+  const auto frames = evaluation::read_ceiling_drives(drives, {}, run.options.threads);
   localization::CeilingFilterParams params;
   params.tilt_sigma = from_deg(1.0);
   params.height_sigma = 0.02;
@@ -161,11 +162,11 @@ void study_positions(const ChonbukRun& run) {
   std::vector<CeilingEstimate> followed;
   for (std::size_t i = 0; i < drives.size(); ++i) {
     const CeilingSetting& setting = drives[i].setting;
-    const auto errors = calibrate_ceiling(setting, frames[i], kPeriod_s);
+    const auto errors = calibrate_ceiling(setting, frames[i], period_s);
     append(tilted, follow_published(setting, setting.known_camera(), frames[i]));
     append(calibrated,
            follow_published(setting, corrected(setting.known_camera(), errors), frames[i]));
-    append(followed, follow_jointly(setting, params, frames[i], CeilingMotion::unknown, kPeriod_s));
+    append(followed, follow_jointly(setting, params, frames[i], CeilingMotion::unknown, period_s));
     if (i == 0)
       draw_errors(run, "positions.png", "A hundred positions: 1° tilt, 2 % height, 5 mm, 1.3°",
                   tilted, followed);
@@ -211,7 +212,7 @@ report::Curve heading_of(const std::string& name, const std::vector<CeilingEstim
 /// Lines by optical flow alone, and the paper's turn of half a circle.
 std::vector<std::vector<CeilingFrame>> study_flow(const ChonbukRun& run,
                                                   const std::vector<CeilingDrive>& drives) {
-  auto frames = read_ceiling_drives(drives, {true, true}, run.options.threads);
+  auto frames = evaluation::read_ceiling_drives(drives, {true, true}, run.options.threads);
   double published = 0.0;
   double best = 0.0;
   double published_worst = 0.0;
@@ -249,7 +250,7 @@ void study_turn(const ChonbukRun& run) {
   constexpr int kTurnFrames = 360;
   CeilingDrive drive{ideal(1), {}};
   for (int i = 0; i <= kTurnFrames; ++i) drive.poses.push_back({0.3, 0.2, kPi * i / kTurnFrames});
-  const auto frames = read_ceiling_drives({drive}, {true, true}, 1).front();
+  const auto frames = evaluation::read_ceiling_drives({drive}, {true, true}, 1).front();
   const auto published = follow_flow(drive.setting, frames, CeilingMotion::published_flow);
   const auto best = follow_flow(drive.setting, frames, CeilingMotion::key_frame_flow);
   const auto end = [](const std::vector<CeilingEstimate>& all) {

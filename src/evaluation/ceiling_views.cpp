@@ -7,6 +7,7 @@
 
 #include "vigia/core/angle.hpp"
 #include "vigia/core/plane_geometry.hpp"
+#include "vigia/imaging/image_frame.hpp"
 #include "vigia/sim/appearance.hpp"
 #include "vigia/tracking/plane_flow.hpp"
 
@@ -121,9 +122,12 @@ std::vector<CeilingFrame> read_ceiling_drive(const CeilingSetting& setting,
     CeilingFrame& frame = frames.emplace_back();
     frame.truth = poses[i];
     const auto exposure = hall.expose(poses[i], static_cast<std::int64_t>(i));
-    frame.scan = finder.find(*exposure);
-    if (!flows.published && !flows.by_key_frames) continue;
+    if (!flows.published && !flows.by_key_frames) {
+      frame.scan = finder.find(*exposure);
+      continue;
+    }
     const vpImage<unsigned char> image = imaging::grey_image(*exposure);
+    frame.scan = finder.find(imaging::ImageFrame(image));
     if (flows.by_key_frames) frame.flow = chain.next(image, frame.flow_agreement);
     if (!flows.published) continue;
     tracking::EdgeImage now = tracking::find_edges(image, window);

@@ -48,6 +48,7 @@ void CeilingFilter::reset(Stamp stamp, const Prior& prior) {
   P_(5, 5) = params_.height_sigma * params_.height_sigma;
   patches_.clear();
   shifts_ = {{CeilingCell{}, 1.0}};
+  gated_ = 0;
   unknown_s_ = 0.0;
   refresh_belief();
 }
@@ -289,6 +290,15 @@ void CeilingFilter::weigh_shifts(const Linearised& all, const std::vector<Seen>&
     if (weight > kNegligible * sum) shifts_[to] = weight / sum;
 }
 
+/// Patches contradict the prediction again and again: it may be anywhere in its cell and the next.
+void CeilingFilter::doubt() {
+  const double sigma = 0.5 * grid_.pitch_m;
+  P_.topRows<3>().setZero();
+  P_.leftCols<3>().setZero();
+  P_.diagonal().head<3>() << sigma * sigma, sigma * sigma, from_deg(30.0) * from_deg(30.0);
+  gated_ = 0;
+}
+
 void CeilingFilter::shift_by(const CeilingCell& shift) {
   if (shift == CeilingCell{}) return;
   x_.head<2>() += cell_centre(grid_, shift);
@@ -313,9 +323,11 @@ CeilingUpdate CeilingFilter::update(const std::vector<PatchImage>& patches) {
     all = linearise(passed, at);
   }
   if (passed.empty()) {
+    if (++gated_ >= params_.max_gated) doubt();
     refresh_belief();
     return CeilingUpdate::gated;
   }
+  gated_ = 0;
   weigh_shifts(all, passed, at);
   const Eigen::MatrixXd K =
       P_ * all.H.transpose() *

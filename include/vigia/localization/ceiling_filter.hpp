@@ -22,6 +22,7 @@ struct CeilingFilterParams {
   double max_speed_mps = 0.3;  ///< where nothing else is known of the motion
   double sure = 0.99;          ///< a hypothesis is believed alone from this weight on
   double spurious = 0.02;      ///< chance that a patch hangs where the grid has none
+  int max_gated = 3;  ///< frames in a row that contradict the prediction, until it is doubted
 };
 
 /// What became of a frame's patches.
@@ -86,6 +87,7 @@ class CeilingFilter {
   Linearised linearise(const std::vector<Seen>& seen, const Pose2& at) const;
   std::vector<Seen> gated(const std::vector<Seen>& seen, const Linearised& all) const;
   void weigh_shifts(const Linearised& all, const std::vector<Seen>& seen, const Pose2& at);
+  void doubt();
   void shift_by(const CeilingCell& shift);
   using MotionJacobian = Eigen::Matrix<double, 3, 6>;
   void move(const Pose2& to, const MotionJacobian& F, const Eigen::Matrix3d& Q);
@@ -98,6 +100,7 @@ class CeilingFilter {
   Eigen::MatrixXd P_;
   std::map<CeilingCell, Eigen::Index> patches_;  ///< where a cell's three states begin
   Shifts shifts_;
+  int gated_ = 0;           ///< frames in a row
   double unknown_s_ = 0.0;  ///< for how long nothing was known of the motion
   Stamp stamp_;
   Belief belief_;
