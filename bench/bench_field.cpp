@@ -36,16 +36,21 @@ struct Frames {
   }
 };
 
+Pose2 start_near(const evaluation::FieldFrame& frame) {
+  Pose2 start = frame.truth;
+  start.x += 0.03;
+  start.theta += 0.01;
+  return start;
+}
+
 void BM_RefineTracked(benchmark::State& state) {
   const Frames frames(false);
   const localization::FieldModel model(frames.map);
   std::size_t i = 0;
   for (auto _ : state) {
     const auto& frame = frames.frames[i++ % kFrames];
-    Pose2 start = frame.truth;
-    start.x += 0.03;
-    start.theta += 0.01;
-    benchmark::DoNotOptimize(localization::refine_field_pose(model, frame.scan.points, start));
+    benchmark::DoNotOptimize(
+        localization::refine_field_pose(model, frame.scan.points, start_near(frame)));
   }
 }
 BENCHMARK(BM_RefineTracked)->Unit(benchmark::kMillisecond);
@@ -57,10 +62,7 @@ void BM_PosteriorTracked(benchmark::State& state) {
   std::size_t i = 0;
   for (auto _ : state) {
     const auto& frame = frames.frames[i++ % kFrames];
-    Pose2 start = frame.truth;
-    start.x += 0.03;
-    start.theta += 0.01;
-    const auto fix = localization::refine_field_pose(model, frame.scan.points, start);
+    const auto fix = localization::refine_field_pose(model, frame.scan.points, start_near(frame));
     benchmark::DoNotOptimize(
         localization::posterior_about(model, frame.scan.points, model.groups_of(frame.scan), fix));
   }

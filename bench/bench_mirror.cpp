@@ -1,6 +1,8 @@
 // Cost of a mirror camera's picture of a field, whole and along the rays of a radial scan, beside
 // the same picture of an empty hall, which has no paint, goals, boards or people. Argument: 0 the
 // field, 1 the empty hall.
+#include "sim/soccer.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -27,14 +29,6 @@ sim::Scene scene_of(bool empty) {
   if (!empty) return {world, sim::read_appearance(reader, world), 1};
   world.field.reset();
   return {world, nullptr, 1};
-}
-
-CameraModel soccer_mirror() {
-  UnifiedOmni mirror;
-  mirror.px = 204.0;
-  mirror.py = -204.0;
-  mirror.max_angle = from_deg(99.0);
-  return mirror;
 }
 
 sim::Exposure exposure_of(bool empty) {
@@ -88,7 +82,8 @@ void full_mirror_frame(benchmark::State& state) {
   std::vector<vpRGBa> pixels(640 * 480);
   Stamp stamp;
   for (auto _ : state) {
-    const auto frame = scene.expose(exposure, soccer_mirror(), {stamp.ns += kFrame}, in_colour());
+    const auto frame =
+        scene.expose(exposure, sim::soccer_mirror(), {stamp.ns += kFrame}, in_colour());
     frame->read_colour(frame->full(), pixels.data(), 640);
     benchmark::DoNotOptimize(pixels.data());
   }
@@ -102,7 +97,8 @@ void mirror_scan(benchmark::State& state) {
   std::vector<vpRGBa> pixels(imaging::pixels_in(runs));
   Stamp stamp;
   for (auto _ : state) {
-    const auto frame = scene.expose(exposure, soccer_mirror(), {stamp.ns += kFrame}, in_colour());
+    const auto frame =
+        scene.expose(exposure, sim::soccer_mirror(), {stamp.ns += kFrame}, in_colour());
     frame->read_colour_runs(runs, pixels.data());
     benchmark::DoNotOptimize(pixels.data());
   }

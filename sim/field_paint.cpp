@@ -37,29 +37,35 @@ struct Band {
 namespace {
 
 /// Share of a Gaussian inside two bands: a rectangle of the normal distribution of two variables
-/// that are correlated as the bands' normals are, by Gauss's rule in two halves over the narrower.
+/// that are correlated as the bands' normals are, by Gauss's rule in pieces over the narrower; the
+/// more alike the normals, the steeper its integrand and the shorter the pieces.
 float share_of_both(const Band& a, const Band& b) {
   constexpr std::array<float, 5> kNodes{-0.9061798F, -0.5384693F, 0.0F, 0.5384693F, 0.9061798F};
   constexpr std::array<float, 5> kWeights{0.2369269F, 0.4786287F, 0.5688889F, 0.4786287F,
                                           0.2369269F};
+  constexpr int kMostPieces = 24;
   const bool a_narrower = a.to - a.from < b.to - b.from;
   const Band& inner = a_narrower ? a : b;
   const Band& outer = a_narrower ? b : a;
   const float rho = inner.normal.dot(outer.normal);
   const float scale = 1.0F / std::sqrt(std::max(1.0F - rho * rho, 1e-4F));
   const float low = std::max(inner.from, -kTails);
-  const float quarter = 0.25F * (std::min(inner.to, kTails) - low);
-  if (quarter <= 0.0F) return 0.0F;
+  const float width = std::min(inner.to, kTails) - low;
+  if (width <= 0.0F) return 0.0F;
+  const int pieces = std::clamp(static_cast<int>(std::ceil(0.25F * width * std::abs(rho) * scale)),
+                                2, kMostPieces);
+  const float half = 0.5F * width / static_cast<float>(pieces);
   float sum = 0.0F;
-  for (const float middle : {low + quarter, low + 3.0F * quarter}) {
+  for (int piece = 0; piece < pieces; ++piece) {
+    const float middle = low + half * static_cast<float>(2 * piece + 1);
     for (std::size_t i = 0; i < kNodes.size(); ++i) {
-      const float x = middle + quarter * kNodes[i];
+      const float x = middle + half * kNodes[i];
       const float within = share_inside_side((outer.to - rho * x) * scale) -
                            share_inside_side((outer.from - rho * x) * scale);
       sum += kWeights[i] * std::exp(-0.5F * x * x) * within;
     }
   }
-  return std::max(0.0F, 0.39894228F * quarter * sum);
+  return std::max(0.0F, 0.39894228F * half * sum);
 }
 
 bool meets_another(const std::vector<FieldLine>& lines, std::size_t mine,
@@ -279,8 +285,10 @@ std::optional<FieldPaintView::Strip> FieldPaintView::strip_of(const Straight& li
                  pixel.distance(half - line.across, sigma_px_)};
   strip.whole = along > pixel.reach_m && along < line.length - pixel.reach_m;
   if (strip.whole) return strip;
-  strip.ends = {pixel.normal(line.along), -pixel.distance(line.along, sigma_px_),
-                pixel.distance(line.length * floor_w_ - line.along, sigma_px_)};
+  // The ends are not parallel in the image as the sides nearly are: the nearer one's direction.
+  const Eigen::Vector3f past_end = line.along - line.length * floor_w_;
+  strip.ends = {pixel.normal(2.0F * along < line.length ? line.along : past_end),
+                -pixel.distance(line.along, sigma_px_), -pixel.distance(past_end, sigma_px_)};
   return strip;
 }
 

@@ -13,6 +13,7 @@ void add_track(CLI::App& app, int& status);
 void add_landmark(CLI::App& app, int& status);
 void add_evaluate(CLI::App& app, int& status);
 void add_reproduce(CLI::App& app, int& status);
+void add_report(CLI::App& app, int& status);
 void add_help(CLI::App& app, int& status);
 
 }  // namespace vigia::app

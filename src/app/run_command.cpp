@@ -3,6 +3,7 @@
 #include "frame_album.hpp"
 #include "interrupt.hpp"
 #include "progress.hpp"
+#include "replay_recorder.hpp"
 
 #include <iostream>
 #include <memory>
@@ -29,9 +30,11 @@ struct RunOptions {
   std::vector<std::string> overrides;
   bool json = false;
   bool quiet = false;
+  bool no_report = false;
 };
 
-void print_summary(const evaluation::DriveScore& score, const std::string& folder) {
+void print_summary(const evaluation::DriveScore& score, const RunOptions& options,
+                   const std::string& folder) {
   fmt::print("{}  seed {}  {} after {:.1f} s\n\n", score.mission, score.seed,
              to_string(score.outcome), score.sim_s);
   fmt::print("{:<10} {:>10} {:>10} {:>10} {:>9} {:>9} {:>7} {:>8} {:>9}\n", "localizer", "final cm",
@@ -47,6 +50,22 @@ void print_summary(const evaluation::DriveScore& score, const std::string& folde
   fmt::print("\n{} looks, {} stops ({:.1f} s), centring {:.2f} px rms, {:.1f} px max, {} losses\n",
              p.looks, p.stops, p.stopped_s, p.centring_rms_px, p.centring_max_px, p.target_losses);
   fmt::print("\nrun folder: {}\npicture:    {}/map.png\n", folder, folder);
+  if (!options.no_report) fmt::print("replay:     {}/report.html\n", folder);
+}
+
+/// For a shell.
+std::string quoted(const std::string& word) {
+  std::string out = "'";
+  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+/// What repeats the run, but for where its folder lies.
+std::string command_of(const RunOptions& options) {
+  std::string command = "vigia run " + quoted(options.mission);
+  if (options.seed) command += fmt::format(" --seed {}", *options.seed);
+  for (const std::string& key : options.overrides) command += " --set " + quoted(key);
+  return command;
 }
 
 int run(const RunOptions& options) {
@@ -61,18 +80,23 @@ int run(const RunOptions& options) {
   DrivePicture picture;
   FrameAlbum album;
   Progress progress(options.quiet || options.json);
-  const auto outcome = mission::run_mission(
-      setup, setup.seed, {&interruption, &scorer, &picture, &album, &progress, &folder});
+  ReplayRecorder replay(scorer);
+  std::vector<mission::Listener*> listeners{&interruption, &scorer,   &picture,
+                                            &album,        &progress, &folder};
+  if (!options.no_report) listeners.push_back(&replay);
+  const auto outcome = mission::run_mission(setup, setup.seed, listeners);
   const std::string summary = evaluation::summary_json(scorer.score());
   folder.folder().add("summary.json", summary);
   folder.folder().make("frames");
   album.write(folder.folder().staging() / "frames");
   picture.draw(scorer.score(), folder.folder().staging() / "map.png");
+  if (!options.no_report)
+    folder.folder().add("report.html", report::replay_page({replay.run(command_of(options))}));
   folder.folder().commit();
   if (options.json)
     std::cout << summary;
   else
-    print_summary(scorer.score(), out);
+    print_summary(scorer.score(), options, out);
   return outcome == mission::Outcome::arrived ? 0 : 1;
 }
 
@@ -98,6 +122,7 @@ void add_run(CLI::App& app, int& status) {
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
   command->add_flag("--json", options->json, "Print summary.json on stdout");
+  command->add_flag("--no-report", options->no_report, "Write no report.html");
   command->add_flag("--quiet", options->quiet, "No progress line");
   command->callback([options, &status] {
     try {

@@ -121,4 +121,8 @@ const DriveScore& DriveScorer::score() const {
   return impl_->score;
 }
 
+double DriveScorer::bound_position_m2(std::size_t localizer) const {
+  return impl_->localizers[localizer].bound_position_m2();
+}
+
 }  // namespace vigia::evaluation

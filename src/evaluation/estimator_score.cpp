@@ -76,7 +76,7 @@ void EstimatorScorer::add_errors(const mission::EstimatorTick& tick, const Belie
   const Eigen::Vector3d error = difference(belief.pose, truth);
   const double squared = error.head<2>().squaredNorm();
   const double nees = evaluation::nees({truth, belief.pose, belief.covariance});
-  const double bound_m2 = bound_.covariance().topLeftCorner<2, 2>().trace();
+  const double bound_m2 = bound_position_m2();
   if (!fixed_ && belief.status == BeliefStatus::tracking) {
     // What it believed before it knew anything is no estimate.
     fixed_ = true;
@@ -101,6 +101,10 @@ void EstimatorScorer::add_errors(const mission::EstimatorTick& tick, const Belie
   auto& looks = score_.looks;
   if (looks.empty() || looks.back().look != *fused) looks.push_back({*fused});
   looks.back() = {*fused, nees, squared, bound_m2};
+}
+
+double EstimatorScorer::bound_position_m2() const {
+  return bound_.covariance().topLeftCorner<2, 2>().trace();
 }
 
 LocalizerScore EstimatorScorer::score() const {

@@ -49,7 +49,8 @@ std::vector<std::size_t> largest_group(const std::vector<FieldPoint>& points,
       if (length < kNearest_m) continue;
       const Line line{points[free[i]].p_r, Eigen::Vector2d(-along.y(), along.x()) / length};
       std::size_t count = 0;
-      for (const std::size_t k : free) count += lies_on(points[k], line, floor_m) ? 1 : 0;
+      for (std::size_t k = 0; k < free.size() && count + free.size() - k > largest.size(); ++k)
+        count += lies_on(points[free[k]], line, floor_m) ? 1 : 0;
       if (count <= largest.size()) continue;
       largest = points_on(points, free, line, floor_m);
       best = line;

@@ -172,8 +172,9 @@ TEST_F(Program, SaysAsWhatItCheckedAFile) {
 TEST_F(Program, ReportsAMissionThatDidNotArriveWithStatusOneAndAWholeRunFolder) {
   const auto result = vigia(short_run(dir_.path() / "run"));
   EXPECT_EQ(result.status, 1) << result.err;
-  for (const char* name : {"summary.json", "mission.yaml", "truth.tum", "ekf.tum", "odometry.tum",
-                           "ticks.csv", "events.jsonl", "map.png", "timing.json", "timing.csv"})
+  for (const char* name :
+       {"summary.json", "mission.yaml", "truth.tum", "ekf.tum", "odometry.tum", "ticks.csv",
+        "events.jsonl", "map.png", "timing.json", "timing.csv", "report.html"})
     EXPECT_TRUE(fs::exists(dir_.path() / "run" / name)) << name;
   const auto summary =
       nlohmann::json::parse(vigia::testing::read_text(dir_.path() / "run/summary.json"));
@@ -207,10 +208,45 @@ TEST_F(Program, RepeatsARunFromItsResolvedMission) {
 TEST_F(Program, GivesTheSameBytesInTwoProcesses) {
   ASSERT_EQ(vigia(short_run(dir_.path() / "a") + " --seed 7").status, 1);
   ASSERT_EQ(vigia(short_run(dir_.path() / "b") + " --seed 7").status, 1);
-  for (const char* name : {"summary.json", "ticks.csv", "events.jsonl", "map.png", "truth.tum"})
+  for (const char* name :
+       {"summary.json", "ticks.csv", "events.jsonl", "map.png", "truth.tum", "report.html"})
     EXPECT_EQ(vigia::testing::read_text(dir_.path() / "a" / name),
               vigia::testing::read_text(dir_.path() / "b" / name))
         << name;
+}
+
+TEST_F(Program, LeavesTheReplayPageOutWhereItIsNotWanted) {
+  ASSERT_EQ(vigia(short_run(dir_.path() / "run") + " --no-report").status, 1);
+  EXPECT_FALSE(fs::exists(dir_.path() / "run/report.html"));
+  EXPECT_TRUE(fs::exists(dir_.path() / "run/map.png"));
+}
+
+TEST_F(Program, ReplaysTwoRunFoldersOnOnePage) {
+  ASSERT_EQ(vigia(short_run(dir_.path() / "a") + " --seed 1").status, 1);
+  ASSERT_EQ(vigia(short_run(dir_.path() / "b") + " --seed 2").status, 1);
+  const auto page = dir_.path() / "both.html";
+  const auto result = vigia("report " + (dir_.path() / "a").string() + " " +
+                            (dir_.path() / "b").string() + " -o " + page.string());
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.out, page.string() + "\n");
+  EXPECT_EQ(result.err, "");
+  EXPECT_THAT(vigia::testing::read_text(page), HasSubstr("2 drives of armingol-room"));
+}
+
+TEST_F(Program, SaysThatAFoldersDriveIsNotRepeated) {
+  ASSERT_EQ(vigia(short_run(dir_.path() / "run") + " --seed 1 --no-report").status, 1);
+  file("run/summary.json", R"({"mission": "armingol-room", "version": "0.0.1"})");
+  const auto result = vigia("report " + (dir_.path() / "run").string());
+  EXPECT_EQ(result.status, 0);
+  EXPECT_THAT(result.err, HasSubstr("differs from the folder's"));
+  EXPECT_THAT(vigia::testing::read_text(dir_.path() / "run/report.html"),
+              HasSubstr("differs from the folder's"));
+}
+
+TEST_F(Program, SaysWhatIsMissingInAFolderThatIsNoRun) {
+  const auto result = vigia("report " + dir_.path().string());
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, HasSubstr("is no run folder: there is no mission.yaml"));
 }
 
 TEST_F(Program, ReplacesAnEarlierRunFolder) {

@@ -57,6 +57,8 @@ class DriveScorer : public mission::Listener {
 
   /// Complete after on_finish().
   const DriveScore& score() const;
+  /// EstimatorScorer::bound_position_m2() of a localizer, in the order of MissionSetup::localizers.
+  double bound_position_m2(std::size_t localizer) const;
 
  private:
   struct Impl;

@@ -80,6 +80,8 @@ class EstimatorScorer {
   void add(const mission::EstimatorTick& tick, std::size_t localizer);
 
   LocalizerScore score() const;
+  /// Trace of the present bound's position covariance, m².
+  double bound_position_m2() const;
 
  private:
   std::optional<LookId> count_updates(const mission::EstimatorTick& tick, std::size_t localizer);

@@ -1,0 +1,22 @@
+# Writes OUT, a C++ file that holds the page's files as string literals. The third-party ones must
+# be those whose checksums stand here. Run as a script: -DHERE=<this folder> -DOUT=<file>.
+set(uplot_js_sha256 19c8d4c6ad88929a79f4ae49d6f7161566dfd0ba3d15cc495e974f787eb78f1f)
+set(uplot_css_sha256 df630c6a8d6f8eeaff264b50f73ce5b114f646ffd9a0bb74f049b0a00135fa04)
+
+set(text "#include \"page_assets.hpp\"\n\nnamespace vigia::report::assets {\n")
+function(embed name file)
+  if(ARGC GREATER 2)
+    file(SHA256 ${HERE}/${file} found)
+    if(NOT found STREQUAL ARGV2)
+      message(FATAL_ERROR "${HERE}/${file}: has the SHA-256 ${found}, must have ${ARGV2}")
+    endif()
+  endif()
+  file(READ ${HERE}/${file} content)
+  set(text "${text}\nconst std::string_view ${name} = R\"vigia-page(${content})vigia-page\";\n" PARENT_SCOPE)
+endfunction()
+embed(kPageHtml page.html)
+embed(kPageCss page.css)
+embed(kPageJs page.js)
+embed(kPlotCss third_party/uPlot.min.css ${uplot_css_sha256})
+embed(kPlotJs third_party/uPlot.iife.min.js ${uplot_js_sha256})
+file(WRITE ${OUT} "${text}\n}  // namespace vigia::report::assets\n")

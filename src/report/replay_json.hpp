@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "vigia/report/replay_page.hpp"
+
+namespace vigia::report {
+
+/// The data of a replay page as JSON without any '<', so that it can stand in a page.
+std::string replay_json(const std::vector<ReplayRun>& runs, const std::string& title,
+                        int max_ticks);
+
+}  // namespace vigia::report
