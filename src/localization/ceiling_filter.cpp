@@ -130,14 +130,16 @@ std::vector<CeilingFilter::Seen> CeilingFilter::see(const std::vector<PatchImage
 std::vector<CeilingFilter::Seen> CeilingFilter::associated(const std::vector<Seen>& seen,
                                                            const Pose2& pose) const {
   std::map<CeilingCell, std::pair<double, Seen>> by_cell;
-  const double near = kPatchAgrees_m + 4.0 * grid_.placement_m +
-                      3.0 * std::min(belief_.position_sigma(), 0.1 * grid_.pitch_m);
+  // Where the pose is one of the patches' the others must agree with it, not with the prediction.
+  const double sigmas = wide() ? 0.0 : 3.0;
+  const double near = kPatchAgrees_m + 4.0 * grid_.placement_m + sigmas * belief_.position_sigma();
+  const double turn_slack = sigmas * std::sqrt(P_(2, 2));
   for (Seen one : seen) {
     const Eigen::Vector2d p = pose.position() + world_to_robot(-pose.theta) * one.patch.q;
     one.cell = nearest_cell(grid_, p);
     const double off = (cell_centre(grid_, one.cell) - p).norm();
     const double turn = direction_difference(-pose.theta, one.patch.psi, one.directed);
-    if (off > near + 0.3 * one.patch.q.norm() * std::sqrt(std::min(P_(2, 2), 0.02))) continue;
+    if (off > near + turn_slack * one.patch.q.norm()) continue;
     if (std::abs(turn) > 0.25 + 4.0 * grid_.placement_turn) continue;
     const auto found = by_cell.find(one.cell);
     if (found == by_cell.end())
