@@ -4,17 +4,21 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 get_property(_vigia_modules GLOBAL PROPERTY VIGIA_MODULES)
-install(TARGETS ${_vigia_modules} EXPORT vigiaTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(TARGETS vigia RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(DIRECTORY include/vigia DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(DIRECTORY config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/vigia/config)
+install(TARGETS ${_vigia_modules} EXPORT vigiaTargets
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+install(TARGETS vigia RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
+install(DIRECTORY include/vigia DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
+install(DIRECTORY config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/vigia/config COMPONENT runtime)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/vigia RENAME copyright
+        COMPONENT runtime)
 
 set(_vigia_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/vigia)
-install(EXPORT vigiaTargets NAMESPACE vigia:: DESTINATION ${_vigia_package_dir})
+install(EXPORT vigiaTargets NAMESPACE vigia:: DESTINATION ${_vigia_package_dir}
+        COMPONENT development)
 configure_package_config_file(cmake/vigiaConfig.cmake.in
   ${PROJECT_BINARY_DIR}/vigiaConfig.cmake INSTALL_DESTINATION ${_vigia_package_dir})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/vigiaConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/vigiaConfig.cmake ${PROJECT_BINARY_DIR}/vigiaConfigVersion.cmake
               cmake/VigiaDependencies.cmake
-        DESTINATION ${_vigia_package_dir})
+        DESTINATION ${_vigia_package_dir} COMPONENT development)

@@ -36,6 +36,9 @@ const std::vector<TrackerEntry>& trackers() {
        nullptr,
        &points<PatternTracker>},
       {{"tag", "AprilTags of the family 36h11", "tags"}, nullptr, &points<TagTracker>},
+      {{"field_scan", "lines, goals and posts of a field in a mirror camera's pictures", "colour"},
+       nullptr,
+       nullptr},
   };
   return table;
 }

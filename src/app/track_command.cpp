@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -17,6 +18,7 @@
 #include <omp.h>
 #include <opencv2/core/utility.hpp>
 
+#include "vigia/core/angle.hpp"
 #include "vigia/core/camera_file.hpp"
 #include "vigia/core/error.hpp"
 #include "vigia/core/suggestion.hpp"
@@ -36,6 +38,8 @@ struct TrackOptions {
   int every = 1;
   int expected = 0;
   int remember = 50;
+  std::string mirror;
+  double ray_step_deg = 3.0;
   std::string camera;
   std::string landmarks;
   double size_m = 0.0;
@@ -120,7 +124,44 @@ std::vector<tracking::LandmarkCode> parse_codes(const TrackOptions& options) {
   return codes;
 }
 
+bool scans_field(const TrackOptions& options) {
+  return options.tracker == "field_scan";
+}
+
+/// U,V,INNER,OUTER in pixels.
+std::optional<tracking::MirrorImage> parse_mirror(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  std::vector<double> numbers;
+  std::istringstream list(text);
+  for (std::string field; std::getline(list, field, ',');) {
+    const auto number = parsed<double>(field);
+    if (number && std::isfinite(*number)) numbers.push_back(*number);
+  }
+  const bool four = numbers.size() == 4 && std::count(text.begin(), text.end(), ',') == 3;
+  if (!four || !(numbers[2] >= 0.0) || !(numbers[3] > numbers[2]) || !(numbers[3] <= 1e5))
+    throw InputError(
+        fmt::format("--mirror: found '{}', must be U,V,INNER,OUTER, in pixels, with "
+                    "0 ≤ INNER < OUTER ≤ 100000",
+                    text));
+  return tracking::MirrorImage{{numbers[0], numbers[1]}, numbers[2], numbers[3]};
+}
+
+tracking::FieldPictureParams make_field_scan(const TrackOptions& options) {
+  if (!options.ids.empty() || !options.radius_px.empty() || !options.camera.empty() ||
+      options.size_m > 0.0 || !options.landmarks.empty())
+    throw InputError(
+        "--tracker field_scan: a field has no --ids, --radius-px, --camera, --size or "
+        "--landmarks");
+  tracking::FieldPictureParams params;
+  params.mirror = parse_mirror(options.mirror);
+  params.scan.ray_step = from_deg(options.ray_step_deg);
+  return params;
+}
+
 TrackRun::Tracker make_tracker(const TrackOptions& options) {
+  if (scans_field(options)) return make_field_scan(options);
+  if (!options.mirror.empty() || options.output.panorama)
+    throw InputError("--mirror and --panorama: are for --tracker field_scan");
   const std::vector<tracking::LandmarkCode> codes = parse_codes(options);
   const RadiusRange radius = parse_radius(options.radius_px);
   if (tracks_points(options)) {
@@ -182,6 +223,8 @@ void track_input(const std::string& input, const imaging::SourceParams& params, 
 }
 
 int track(const TrackOptions& options) {
+  if (options.output.panorama && options.output.folder.empty())
+    throw InputError("--panorama: needs --out DIR for its pictures");
   use_threads(options.threads);
   TrackOutput output = options.output;
   output.overlays = !options.no_overlay;
@@ -237,6 +280,19 @@ void add_what(CLI::App& command, TrackOptions& options) {
       ->capture_default_str();
 }
 
+void add_field(CLI::App& command, TrackOptions& options) {
+  command.add_option("--mirror", options.mirror,
+                     "field_scan: U,V,INNER,OUTER, the mirror's middle and the radii between which "
+                     "it shows the field, px; without it the mirror is looked for");
+  command
+      .add_option("--ray-step-deg", options.ray_step_deg,
+                  "field_scan: from one ray to the next, degrees")
+      ->check(CLI::Range(0.1, 90.0))
+      ->capture_default_str();
+  command.add_flag("--panorama", options.output.panorama,
+                   "field_scan: unwrapped pictures in the folder panorama");
+}
+
 void add_pose(CLI::App& command, TrackOptions& options) {
   command.add_option("--camera", options.camera,
                      "Calibrated camera (ViSP's XML, OpenCV's YAML): gives poses");
@@ -271,6 +327,7 @@ void add_track(CLI::App& app, int& status) {
   CLI::App* command =
       app.add_subcommand("track", "Run a tracker on pictures, a video or a live camera");
   add_what(*command, *options);
+  add_field(*command, *options);
   add_pose(*command, *options);
   add_output(*command, *options);
   command->callback([options, &status] { status = track(*options); });

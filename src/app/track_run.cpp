@@ -8,7 +8,9 @@
 #include <fmt/format.h>
 
 #include "vigia/core/error.hpp"
+#include "vigia/core/overloaded.hpp"
 #include "vigia/imaging/image_frame.hpp"
+#include "vigia/tracking/panorama.hpp"
 
 namespace vigia::app {
 namespace {
@@ -23,6 +25,9 @@ std::string header_of(const tracking::PictureRun& /*run*/) {
 }
 std::string header_of(const tracking::PointPictureRun& /*run*/) {
   return tracking::points_csv_header();
+}
+std::string header_of(const tracking::FieldPictureParams& /*run*/) {
+  return tracking::field_csv_header();
 }
 
 std::string feature_lines(const tracking::PictureRow& row, const std::string& start) {
@@ -68,6 +73,8 @@ TrackRun::TrackRun(Tracker tracker, std::optional<LandmarkPoses> poses, const Tr
 TrackRun::~TrackRun() = default;
 
 const char* TrackRun::things() const {
+  if (std::holds_alternative<tracking::FieldPictureParams>(tracker_))
+    return "points on lines, goals and posts";
   return std::holds_alternative<tracking::PictureRun>(tracker_) ? "discs" : "landmarks";
 }
 
@@ -81,6 +88,7 @@ void TrackRun::begin() {
   if (!folder_) return;
   folder_->add(kFeatures, "");
   if (output_.overlays) folder_->make("overlay");
+  if (output_.panorama) folder_->make("panorama");
   folder_->commit();
   features_file_.emplace(fs::path(output_.folder) / kFeatures);
   features_file_->write(features);
@@ -89,13 +97,22 @@ void TrackRun::begin() {
   poses_file_->write(poses);
 }
 
+/// What each row begins with.
+std::string TrackRun::place_of(const imaging::Picture& picture) const {
+  return fmt::format("{},{},{},", csv_quoted(picture.name), pictures_,
+                     picture.time_s ? fmt::format("{:.6f}", *picture.time_s) : std::string());
+}
+
+fs::path TrackRun::picture_file(const char* kind, const imaging::Picture& picture) const {
+  return fs::path(output_.folder) / kind /
+         fmt::format("{:05}_{}.png", pictures_, file_stem(picture.name));
+}
+
 template <typename Row>
 TrackRun::Tables TrackRun::tables_of(const std::vector<Row>& rows,
                                      const imaging::Picture& picture) const {
   Tables tables;
-  const std::string place =
-      fmt::format("{},{},{},", csv_quoted(picture.name), pictures_,
-                  picture.time_s ? fmt::format("{:.6f}", *picture.time_s) : std::string());
+  const std::string place = place_of(picture);
   for (const Row& row : rows) {
     const std::string target = row.target > 0 ? std::to_string(row.target) : "";
     tables.features += feature_lines(row, place + target + ',');
@@ -108,13 +125,30 @@ TrackRun::Tables TrackRun::tables_of(const std::vector<Row>& rows,
 }
 
 TrackRun::Tables TrackRun::track(const imaging::Picture& picture, vpImage<vpRGBa>* overlay) {
-  return std::visit(
-      [&](auto& run) {
-        const auto rows = run.next(*picture.frame);
-        if (overlay != nullptr) tracking::draw_overlay(rows, *overlay);
-        return tables_of(rows, picture);
-      },
-      tracker_);
+  return std::visit(Overloaded{[&](tracking::FieldPictureParams& params) {
+                                 return scanned(params, picture, overlay);
+                               },
+                               [&](auto& run) { return followed(run, picture, overlay); }},
+                    tracker_);
+}
+
+template <typename Run>
+TrackRun::Tables TrackRun::followed(Run& run, const imaging::Picture& picture,
+                                    vpImage<vpRGBa>* overlay) const {
+  const auto rows = run.next(*picture.frame);
+  if (overlay != nullptr) tracking::draw_overlay(rows, *overlay);
+  return tables_of(rows, picture);
+}
+
+TrackRun::Tables TrackRun::scanned(const tracking::FieldPictureParams& params,
+                                   const imaging::Picture& picture, vpImage<vpRGBa>* overlay) {
+  const tracking::FieldPicture found = tracking::scan_field_picture(*picture.frame, params);
+  if (overlay != nullptr) tracking::draw_overlay(found, *overlay);
+  if (output_.panorama && found.mirror.outer_px > 0.0)
+    panorama_ = tracking::unwrapped_panorama(*picture.frame, found.mirror);
+  // No target is followed: that column stays empty.
+  return {tracking::field_csv_lines(found, place_of(picture) + ','), "",
+          tracking::features_in(found)};
 }
 
 void TrackRun::picture(const imaging::Picture& picture) {
@@ -132,10 +166,9 @@ void TrackRun::picture(const imaging::Picture& picture) {
   write(tables);
   fewest_ = pictures_ == 1 ? tables.found : std::min(fewest_, tables.found);
   found_ += tables.found;
-  if (folder_ && output_.overlays)
-    imaging::write_png(fs::path(output_.folder) / "overlay" /
-                           fmt::format("{:05}_{}.png", pictures_, file_stem(picture.name)),
-                       overlay);
+  if (folder_ && output_.overlays) imaging::write_png(picture_file("overlay", picture), overlay);
+  if (folder_ && panorama_) imaging::write_png(picture_file("panorama", picture), *panorama_);
+  panorama_.reset();
   if (window_) window_->show(overlay);
 }
 

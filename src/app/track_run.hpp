@@ -3,6 +3,7 @@
 #include "landmark_poses.hpp"
 #include "overlay_window.hpp"
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,15 +12,17 @@
 #include "vigia/core/output_file.hpp"
 #include "vigia/core/output_folder.hpp"
 #include "vigia/imaging/picture_source.hpp"
+#include "vigia/tracking/field_picture_run.hpp"
 #include "vigia/tracking/picture_run.hpp"
 #include "vigia/tracking/point_picture_run.hpp"
 
 namespace vigia::app {
 
 struct TrackOutput {
-  std::string folder;    ///< for the tables and the overlay pictures; empty: none
-  bool overlays = true;  ///< whether the folder gets pictures
-  bool view = false;     ///< a window
+  std::string folder;     ///< for the tables and the overlay pictures; empty: none
+  bool overlays = true;   ///< whether the folder gets pictures
+  bool view = false;      ///< a window
+  bool panorama = false;  ///< a field's pictures unwrapped, in the folder
 };
 
 /// Runs a tracker over pictures and writes what it sees, picture by picture: on stdout the table of
@@ -27,7 +30,8 @@ struct TrackOutput {
 /// whatever happens afterwards. The folder takes its name when the first picture has been tracked.
 class TrackRun {
  public:
-  using Tracker = std::variant<tracking::PictureRun, tracking::PointPictureRun>;
+  using Tracker =
+      std::variant<tracking::PictureRun, tracking::PointPictureRun, tracking::FieldPictureParams>;
 
   TrackRun(Tracker tracker, std::optional<LandmarkPoses> poses, const TrackOutput& output);
   ~TrackRun();
@@ -50,6 +54,12 @@ class TrackRun {
 
   void begin();
   Tables track(const imaging::Picture& picture, vpImage<vpRGBa>* overlay);
+  template <typename Run>
+  Tables followed(Run& run, const imaging::Picture& picture, vpImage<vpRGBa>* overlay) const;
+  Tables scanned(const tracking::FieldPictureParams& params, const imaging::Picture& picture,
+                 vpImage<vpRGBa>* overlay);
+  std::string place_of(const imaging::Picture& picture) const;
+  std::filesystem::path picture_file(const char* kind, const imaging::Picture& picture) const;
   template <typename Row>
   Tables tables_of(const std::vector<Row>& rows, const imaging::Picture& picture) const;
   void write(const Tables& tables);
@@ -61,6 +71,7 @@ class TrackRun {
   std::optional<OutputFile> features_file_;
   std::optional<OutputFile> poses_file_;
   std::optional<OverlayWindow> window_;
+  std::optional<vpImage<vpRGBa>> panorama_;  ///< of the present picture
   int pictures_ = 0;
   int found_ = 0;
   int fewest_ = 0;

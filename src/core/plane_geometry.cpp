@@ -48,6 +48,13 @@ bool inside_polygon(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>
   return inside;
 }
 
+double polygon_area(const std::vector<Eigen::Vector2d>& polygon) {
+  double twice = 0.0;
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+    twice += cross(polygon[i], polygon[(i + 1) % polygon.size()]);
+  return 0.5 * std::abs(twice);
+}
+
 double distance_to_outline(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& polygon) {
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < polygon.size(); ++i)

@@ -6,9 +6,9 @@
 namespace vigia::evaluation {
 namespace {
 
-constexpr std::array<mission::Outcome, 4> kOutcomes{
+constexpr std::array<mission::Outcome, 5> kOutcomes{
     mission::Outcome::arrived, mission::Outcome::collided, mission::Outcome::timeout,
-    mission::Outcome::stuck};
+    mission::Outcome::stuck, mission::Outcome::lost};
 
 mission::Outcome outcome_from(const std::string& text) {
   for (const auto outcome : kOutcomes)

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "vigia/core/plane_geometry.hpp"
 #include "vigia/localization/chi_square.hpp"
 
 namespace vigia::localization {
@@ -109,10 +110,27 @@ Relocalizer::Relocalizer(LandmarkMap map, FloorPlan plan, const RigOnGround& on_
       plan_(std::move(plan)),
       biases_(look_covariance(params.sensor)) {}
 
-Relocalization Relocalizer::solve(const Sweep& sweep, const std::optional<Prior>& prior) const {
+Relocalization Relocalizer::solve(const Sweep& sweep, const PlacePrior& place) const {
   const std::vector<EllipseObservation> sightings = distinct(sweep.sightings);
+  auto found = hypotheses(sweep, sightings, seeds(sightings), std::nullopt);
+  for (Hypothesis& h : found) h.log_weight += std::log(relative_density(h.fit, place));
+  return weighed(std::move(found), sightings.size());
+}
+
+Relocalization Relocalizer::confirm(const Sweep& sweep, const Prior& prior) const {
+  const std::vector<EllipseObservation> sightings = distinct(sweep.sightings);
+  auto found = hypotheses(sweep, sightings, {prior.pose}, prior);
+  if (found.empty()) return {};
+  const auto shown = static_cast<int>(landmarks_of(found.front().matches).size());
+  if (found.front().missed >= shown) return {};
+  return weighed(std::move(found), sightings.size());
+}
+
+std::vector<Relocalizer::Hypothesis> Relocalizer::hypotheses(
+    const Sweep& sweep, const std::vector<EllipseObservation>& sightings,
+    const std::vector<Pose2>& seeds, const std::optional<Prior>& prior) const {
   std::vector<Hypothesis> found;
-  for (const Pose2& seed : seeds(sightings, prior)) {
+  for (const Pose2& seed : seeds) {
     const bool known = std::any_of(found.begin(), found.end(), [&seed](const Hypothesis& h) {
       return same_place(h.fit.pose, seed);
     });
@@ -127,8 +145,28 @@ Relocalization Relocalizer::solve(const Sweep& sweep, const std::optional<Prior>
     else if (candidate->log_weight > twin->log_weight)
       *twin = std::move(*candidate);
   }
-  if (found.empty()) return {};
+  return found;
+}
 
+double Relocalizer::relative_density(const Fit& fit, const PlacePrior& place) const {
+  constexpr double kMinArea_m2 = 1.0;
+  const double area = std::max(kMinArea_m2, polygon_area(plan_.outline()));
+  const double anywhere = 1.0 / (area * 2.0 * kPi);
+  double elsewhere = 1.0;
+  double density = 0.0;
+  for (const PoseHypothesis& component : place.components) {
+    const Eigen::Matrix3d S = component.covariance + fit.covariance;
+    const Eigen::Vector3d e = difference(fit.pose, component.pose);
+    const double norm = std::sqrt(std::pow(2.0 * kPi, 3) * S.determinant());
+    density += component.weight * std::exp(-0.5 * e.dot(S.llt().solve(e))) / norm;
+    elsewhere -= component.weight;
+  }
+  constexpr double kNotImpossible = 1e-6;
+  return std::max(elsewhere, kNotImpossible) + density / anywhere;
+}
+
+Relocalization Relocalizer::weighed(std::vector<Hypothesis> found, std::size_t sightings) const {
+  if (found.empty()) return {};
   std::stable_sort(found.begin(), found.end(), [](const Hypothesis& a, const Hypothesis& b) {
     return a.log_weight > b.log_weight;
   });
@@ -141,16 +179,14 @@ Relocalization Relocalizer::solve(const Sweep& sweep, const std::optional<Prior>
   }
   const auto explained = static_cast<double>(found.front().matches.size());
   const bool sure = result.hypotheses.front().weight >= params_.found_weight &&
-                    explained >= params_.explained_share * static_cast<double>(sightings.size());
+                    explained >= params_.explained_share * static_cast<double>(sightings);
   result.status = sure ? RelocalizationStatus::found : RelocalizationStatus::ambiguous;
   return result;
 }
 
-std::vector<Pose2> Relocalizer::seeds(const std::vector<EllipseObservation>& all,
-                                      const std::optional<Prior>& prior) const {
+std::vector<Pose2> Relocalizer::seeds(const std::vector<EllipseObservation>& all) const {
   const std::vector<EllipseObservation> sightings = largest(all);
   std::vector<Pose2> poses;
-  if (prior) poses.push_back(prior->pose);
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     for (std::size_t j = i + 1; j < sightings.size(); ++j) {
       for (const Landmark& k : model_.map().all()) {
@@ -347,8 +383,9 @@ std::optional<Relocalizer::Hypothesis> Relocalizer::hypothesis(
   if (h.fit.chi2 > chi_square_quantile(1.0 - kImpossible, dof)) return std::nullopt;
   if (plan_.clearance(h.fit.pose.position()) < params_.min_clearance_m) return std::nullopt;
   const auto unexplained = static_cast<double>(sightings.size() - h.matches.size());
+  h.missed = missed(h, sweep);
   h.log_weight = -0.5 * h.fit.chi2 - params_.clutter_cost * unexplained +
-                 std::log(1.0 - params_.detection_probability) * missed(h, sweep);
+                 std::log(1.0 - params_.detection_probability) * h.missed;
   return h;
 }
 

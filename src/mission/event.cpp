@@ -54,6 +54,8 @@ std::string_view to_string(EventKind kind) {
       return "timeout";
     case EventKind::stuck:
       return "stuck";
+    case EventKind::still_lost:
+      return "still_lost";
   }
   return "";
 }

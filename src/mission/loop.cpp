@@ -34,8 +34,16 @@ EventKind event_of(Outcome outcome) {
       return EventKind::timeout;
     case Outcome::stuck:
       return EventKind::stuck;
+    case Outcome::lost:
+      return EventKind::still_lost;
   }
   return EventKind::stuck;
+}
+
+RingModel ring_model(const MissionSetup& setup) {
+  const sim::RangeRingParams ring = setup.robot.range_ring.value_or(sim::RangeRingParams{});
+  return {from_deg(setup.pilot.ring.half_angle_deg), setup.pilot.ring.sigma_m,
+          setup.pilot.ring.sigma_relative, ring.height_m};
 }
 
 /// A camera that does not move has no looks and none of their errors, a lens that does not zoom no
@@ -63,6 +71,7 @@ Loop::Loop(const MissionSetup& setup, std::uint64_t seed, const std::vector<List
       cameras_(make_feeds(setup, rig_, simulator_.latency(), simulator_.processing())),
       attention_(make_attention(setup, rig_, seed, log_)),
       recovery_(make_recovery(setup, rig_, cameras_, log_)),
+      ring_doubt_(setup.world.plan, ring_model(setup)),
       navigator_(setup, log_),
       motion_(Duration::from_seconds(longest_latency(cameras_).seconds() + setup.tick_s)),
       dt_(Duration::from_seconds(setup.tick_s)) {
@@ -89,6 +98,7 @@ Outcome Loop::run() {
 
 std::optional<Outcome> Loop::outcome() const {
   if (simulator_.clearance() < 0.0) return Outcome::collided;
+  if (stays_lost_) return Outcome::lost;
   if (gave_up_) return Outcome::stuck;
   if (navigator_.arrived()) {
     const Eigen::Vector2d goal = setup_.path.points().back();
@@ -229,11 +239,16 @@ Commands Loop::proceed(const Readings& readings) {
   const Stopwatch stopwatch;
   const Demand demand = attention_->plan(readings, belief(), navigator_.station(), look_ + 1);
   tick_.timing.plan += stopwatch.elapsed_ms();
-  if (demand.contradicted) primary().lose();
+  if (demand.contradicted || ring_contradicts()) primary().lose();
   if (belief().status == BeliefStatus::lost) return begin_recovery(readings);
   if (demand.new_look) begin_look();
   const BaseRates base = drive(readings, demand.stop);
   return {base, steer(readings, base)};
+}
+
+bool Loop::ring_contradicts() const {
+  return setup_.recovery.ring_probability < 1.0 &&
+         ring_doubt_.probability() >= setup_.recovery.ring_probability;
 }
 
 void Loop::begin_look() {
@@ -243,6 +258,7 @@ void Loop::begin_look() {
 
 BaseRates Loop::drive(const Readings& readings, bool hold) {
   const RangeScan scan = simulator_.scan();
+  ring_doubt_.process(scan, belief());
   const NavigationStep step = navigator_.step(
       {readings.now, readings.odometry, belief(), scan.readings.empty() ? nullptr : &scan, hold});
   tick_.activations = step.activations;
@@ -261,7 +277,9 @@ HeadRates Loop::steer(const Readings& readings, const BaseRates& base) {
 
 Commands Loop::begin_recovery(const Readings& readings) {
   log_.record(EventKind::lost, {{"sigma_m", belief().position_sigma()}},
-              {{"localizer", setup_.primary}});
+              {{"localizer", setup_.primary},
+               {"reason", ring_contradicts() ? "the range ring sees through the map's walls"
+                                             : "landmarks are not where they should be"}});
   attention_->cancel();
   recovering_ = true;
   const RecoveryStep step = recovery_->begin(readings);
@@ -276,7 +294,7 @@ Commands Loop::recover(const Readings& readings, const std::vector<Delivery>& de
   tick_.timing.track += stopwatch.elapsed_ms();
   tick_.activations = step.activations;
   if (step.new_look) begin_look();
-  gave_up_ = gave_up_ || step.status == RecoveryStatus::gave_up;
+  stays_lost_ = step.status == RecoveryStatus::gave_up;
   if (step.status == RecoveryStatus::found) recovered(step.pose);
   return step.commands;
 }
@@ -284,6 +302,7 @@ Commands Loop::recover(const Readings& readings, const std::vector<Delivery>& de
 void Loop::recovered(const std::optional<Prior>& pose) {
   if (pose) primary().reset(tick_.estimator.now, *pose);
   recovering_ = false;
+  ring_doubt_.trust(simulator_.scan(), belief());
   const Pose2& here = belief().pose;
   log_.record(EventKind::recovered, {{"x_m", here.x},
                                      {"y_m", here.y},

@@ -6,6 +6,7 @@
 #include "late_frames.hpp"
 #include "navigator.hpp"
 #include "recovery.hpp"
+#include "ring_doubt.hpp"
 
 #include <memory>
 #include <optional>
@@ -37,6 +38,7 @@ class Loop {
   void begin_look();
   BaseRates drive(const Readings& readings, bool hold);
   HeadRates steer(const Readings& readings, const BaseRates& base);
+  bool ring_contradicts() const;
   Commands begin_recovery(const Readings& readings);
   Commands recover(const Readings& readings, const std::vector<Delivery>& deliveries);
   void recovered(const std::optional<Prior>& pose);
@@ -58,6 +60,7 @@ class Loop {
   std::vector<std::unique_ptr<localization::Localizer>> localizers_;
   std::unique_ptr<Attention> attention_;
   std::unique_ptr<Recovery> recovery_;
+  RingDoubt ring_doubt_;
   Navigator navigator_;
   RecentMotion motion_;
   Duration dt_;
@@ -65,7 +68,8 @@ class Loop {
   LookId look_ = 0;
   bool recovering_ = false;
   bool gave_up_ = false;
-  Tick tick_;  ///< what this tick tells its listeners
+  bool stays_lost_ = false;  ///< the recovery has given up
+  Tick tick_;                ///< what this tick tells its listeners
 };
 
 }  // namespace vigia::mission

@@ -14,6 +14,8 @@ std::string_view to_string(Outcome outcome) {
       return "timeout";
     case Outcome::stuck:
       return "stuck";
+    case Outcome::lost:
+      return "lost";
   }
   return "";
 }

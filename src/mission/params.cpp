@@ -60,8 +60,11 @@ void describe(ParamVisitor& v, RecoveryParams& p) {
   v.number("explained_share", p.explained_share, {0.0, 1.0},
            "of the discs that a sweep shows, which the pose must explain to be believed");
   v.integer("sweeps", p.sweeps, {1, 100},
-            "without a result, after which the outcome is `stuck`; between two of them the robot "
+            "without a result, after which the outcome is `lost`; between two of them the robot "
             "goes some steps to where its range ring has most room");
+  v.number("ring_probability", p.ring_probability, {0.5, 1.0},
+           "of being elsewhere, by beams of the range ring that see through walls of the map, at "
+           "which the belief is lost; 1: never");
 }
 
 }  // namespace vigia::mission

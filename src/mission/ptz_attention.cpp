@@ -1,6 +1,7 @@
 #include "ptz_attention.hpp"
 
 #include <cassert>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -94,7 +95,9 @@ Demand PtzAttention::plan(const Readings& readings, const Belief& belief, double
   if (idle && (suspicious || wanted != planner::LookDemand::none))
     decision = scheduler_.choose(now, belief, readings.head, going);
   // Two landmarks were not where they should be, and there is no third to ask.
-  demand.contradicted = idle && !decision && different_failed() > 1;
+  const bool nothing_to_ask = idle && !decision && !failed_.empty();
+  demand.contradicted =
+      (nothing_to_ask && different_failed() > 1) || held_up(readings, nothing_to_ask);
   if (demand.contradicted) return demand;
 
   // Where there is nothing to look at, standing helps nobody.
@@ -147,6 +150,7 @@ void PtzAttention::cancel() {
   look_.request = TrackRequest::none;
   look_.acquired.reset();
   failed_.clear();
+  held_up_since_.reset();
 }
 
 void PtzAttention::note_failure(LandmarkId landmark, Stamp now) {
@@ -162,6 +166,17 @@ bool PtzAttention::contradicts_belief() const {
   const auto enough = static_cast<std::size_t>(setup_.look.failures_to_lose);
   if (failed_.size() < enough) return false;
   return different_failed() > 1 || failed_.size() >= 2 * enough;
+}
+
+bool PtzAttention::held_up(const Readings& readings, bool nothing_to_ask) {
+  constexpr double kPatience_s = 8.0;
+  constexpr double kStanding_mps = 0.01;
+  const bool stands = std::abs(readings.base_rates().v) < kStanding_mps;
+  if (!nothing_to_ask || !stands)
+    held_up_since_.reset();
+  else if (!held_up_since_)
+    held_up_since_ = readings.now;
+  return held_up_since_ && (readings.now - *held_up_since_).seconds() >= kPatience_s;
 }
 
 /// The events of the two limits: limit_1, stop, restart.

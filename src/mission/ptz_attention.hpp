@@ -54,6 +54,8 @@ class PtzAttention : public Attention {
   std::size_t different_failed() const;
   /// One landmark that fails again and again is missing; several are a sign of being elsewhere.
   bool contradicts_belief() const;
+  /// A look has failed, the robot stands, and for a while there has been nothing else to look at.
+  bool held_up(const Readings& readings, bool nothing_to_ask);
   void record_limits(planner::LookDemand demand, bool stop, double sigma_m);
   void record_gaze(servo::GazeEvent event, LandmarkId landmark, Stamp now);
   const Observation* seen_in(const std::vector<Observation>& observations) const;
@@ -72,6 +74,7 @@ class PtzAttention : public Attention {
   double path_m_ = 0.0;  ///< length of the path
   Look look_;
   std::vector<LandmarkId> failed_;  ///< looks in a row that ended without anything fused
+  std::optional<Stamp> held_up_since_;
   bool stopped_ = false;
   bool over_limit_1_ = false;
 };

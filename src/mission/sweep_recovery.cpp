@@ -36,11 +36,25 @@ std::optional<RangeReading> widest_direction(const RangeScan& scan) {
   return widest;
 }
 
-/// A prior from a belief that has been called into question: half a metre and 10° wider.
-Prior inflated_prior(const Belief& belief) {
-  Prior prior{belief.pose, belief.covariance};
-  prior.covariance.diagonal() += Eigen::Vector3d(0.25, 0.25, from_deg(10.0) * from_deg(10.0));
-  return prior;
+/// Even odds that the alarm was a false one.
+constexpr double kFalseAlarm = 0.5;
+/// That the robot is where no hypothesis of the sweep before has it.
+constexpr double kElsewhere = 0.1;
+/// σ of an exploration's odometry.
+const Eigen::Vector3d kExplorationSigma(0.1, 0.1, from_deg(5.0));
+
+/// What was believed, should the alarm have been a false one: a belief of twice the σ.
+Prior doubted(const Belief& belief) {
+  constexpr double kWider = 4.0;
+  return {belief.pose, kWider * belief.covariance};
+}
+
+/// A hypothesis after the robot has moved by @p motion, by odometry.
+PoseHypothesis moved(const PoseHypothesis& hypothesis, const Pose2& motion) {
+  PoseHypothesis there = hypothesis;
+  there.pose = compose(hypothesis.pose, motion);
+  there.covariance += kExplorationSigma.cwiseAbs2().asDiagonal();
+  return there;
 }
 
 std::optional<Prior> best_of(const localization::Relocalization& found) {
@@ -126,28 +140,52 @@ void SweepRecovery::finish_sweep(const RecoveryInput& input, RecoveryStep& step)
   if (step.pose) {
     step.status = RecoveryStatus::found;
     knew_ = true;
+    alternatives_.reset();
     look_around_.found();
     return;
   }
   if (look_around_.sweeps() >= setup_.recovery.sweeps) {
-    log_.record(EventKind::stuck, {}, {{"reason", "looked around in vain"}});
+    log_.record(EventKind::still_lost, {{"hypotheses", static_cast<double>(found_.size())}},
+                {{"reason", found_.empty() ? "looked around in vain" : "several places fit"}});
     step.status = RecoveryStatus::gave_up;
     return;
   }
-  if (!begin_exploration(input)) begin_sweep(input.readings.head, step);
+  if (!begin_exploration(input)) {
+    // From the same place the same is seen: not to be counted again.
+    begin_sweep(input.readings.head, step);
+    return;
+  }
+  if (!found_.empty()) alternatives_ = Alternatives{std::exchange(found_, {}), input.belief.pose};
 }
 
 std::optional<Prior> SweepRecovery::relocalize(const Belief& belief) {
   const localization::Sweep sweep = std::exchange(sweep_, {});
-  const auto found = relocalizer_.solve(sweep);
+  const auto found = relocalizer_.solve(sweep, place_prior(belief));
+  found_ = found.hypotheses;
   log_.record(EventKind::looked_around,
               {{"sightings", static_cast<double>(sweep.sightings.size())},
                {"hypotheses", static_cast<double>(found.hypotheses.size())}});
   if (auto here = std::exchange(by_code_, std::nullopt)) return here;
   if (auto here = best_of(found)) return here;
-  if (!knew_) return std::nullopt;
+  if (!knew_ || alternatives_ || !found_.empty()) return std::nullopt;
   // The alarm may have been a false one: what was believed helps where too little is seen.
-  return best_of(relocalizer_.solve(sweep, inflated_prior(belief)));
+  return best_of(relocalizer_.confirm(sweep, doubted(belief)));
+}
+
+/// Before a sweep: what the sweep before left open, or what was believed, with doubt.
+localization::PlacePrior SweepRecovery::place_prior(const Belief& belief) const {
+  localization::PlacePrior place;
+  if (alternatives_) {
+    const Pose2 motion = compose(inverse(alternatives_->believed), belief.pose);
+    for (const PoseHypothesis& hypothesis : alternatives_->hypotheses) {
+      place.components.push_back(moved(hypothesis, motion));
+      place.components.back().weight *= 1.0 - kElsewhere;
+    }
+  } else if (knew_) {
+    const Prior believed = doubted(belief);
+    place.components.push_back({believed.pose, believed.covariance, kFalseAlarm});
+  }
+  return place;
 }
 
 /// Where too little is seen, another place may show more: some steps to where the ring has most

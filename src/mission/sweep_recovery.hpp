@@ -12,8 +12,10 @@
 namespace vigia::mission {
 
 /// The recovery of a robot with a head: it stands still and looks around, and what it sees, all at
-/// once, tells where it is: a code alone, or the discs together. Where too little is seen it goes
-/// to where the range ring has most room, and looks around there.
+/// once, tells where it is: a code alone, or the discs together. Where too little is seen, or where
+/// what is seen fits several places, it goes to where the range ring has most room, and looks
+/// around there; what fitted before weighs the places. One of several is never taken for the only
+/// one.
 class SweepRecovery : public Recovery {
  public:
   /// @p eye: of the camera that the head turns. All references outlive the recovery.
@@ -36,6 +38,7 @@ class SweepRecovery : public Recovery {
   void read_code(const PointsObservation& seen);
   void finish_sweep(const RecoveryInput& input, RecoveryStep& step);
   std::optional<Prior> relocalize(const Belief& belief);
+  localization::PlacePrior place_prior(const Belief& belief) const;
   bool begin_exploration(const RecoveryInput& input);
   /// Whether the robot is still on its way.
   bool explore(const RecoveryInput& input, RecoveryStep& step);
@@ -48,8 +51,16 @@ class SweepRecovery : public Recovery {
   localization::Sweep sweep_;
   std::optional<Prior> by_code_;  ///< what a pattern of the sweep said
   std::optional<Exploration> exploration_;
-  HeadRates head_;  ///< asked for last
-  bool knew_;       ///< where it was, some time before it was lost
+  /// What the sweep before the last exploration left open, and what was believed then: the
+  /// odometry from there carries the hypotheses on.
+  struct Alternatives {
+    std::vector<PoseHypothesis> hypotheses;
+    Pose2 believed;
+  };
+  std::optional<Alternatives> alternatives_;
+  std::vector<PoseHypothesis> found_;  ///< by the last sweep
+  HeadRates head_;                     ///< asked for last
+  bool knew_;                          ///< where it was, some time before it was lost
 };
 
 }  // namespace vigia::mission

@@ -160,12 +160,18 @@ TEST(Relocalizer, IsSoonDoneInARoomOfFiftyDiscs) {
   EXPECT_EQ(right, kPoses);
 }
 
-TEST(Relocalizer, SaysAmbiguousInARoomThatLooksTheSameFromTwoPlaces) {
+/// Two pairs of discs, turned by half a turn: every sweep fits two places.
+SweepMaker half_turn_room() {
   SweepMaker make_sweep;
   make_sweep.map =
       LandmarkMap({test::disc(1, 2.0, 0.0, 1.5, 90.0), test::disc(2, 5.0, 0.0, 1.5, 90.0),
                    test::disc(3, 10.0, 7.0, 1.5, -90.0), test::disc(4, 7.0, 7.0, 1.5, -90.0)});
   make_sweep.plan = FloorPlan({{0.0, 0.0}, {12.0, 0.0}, {12.0, 7.0}, {0.0, 7.0}}, 2.8, {}, {});
+  return make_sweep;
+}
+
+TEST(Relocalizer, SaysAmbiguousInARoomThatLooksTheSameFromTwoPlaces) {
+  const SweepMaker make_sweep = half_turn_room();
   RandomStream random(3, "symmetric");
   const Pose2 truth{3.0, 2.5, 0.4};
   const Pose2 mirrored{9.0, 4.5, 0.4 + kPi};
@@ -185,11 +191,43 @@ TEST(Relocalizer, OneSightingIsNotEnoughUnlessThereIsAPrior) {
   Sweep sweep = make_sweep(truth, random);
   ASSERT_GE(sweep.sightings.size(), 2U);
   sweep.sightings.resize(1);
+  const LookId look = sweep.sightings.front().shot.look;
+  const std::vector<Shot> all_round = sweep.views;
+  sweep.views = {all_round.at(static_cast<std::size_t>(look - 1))};
   const Relocalizer relocalizer = relocalizer_for(make_sweep);
   EXPECT_EQ(relocalizer.solve(sweep).status, RelocalizationStatus::not_found);
   const Eigen::Vector3d sigma(0.2, 0.2, from_deg(4.0));
   const Prior prior{{4.1, 2.4, 0.43}, sigma.cwiseAbs2().asDiagonal()};
-  const Relocalization result = relocalizer.solve(sweep, prior);
+  const Relocalization result = relocalizer.confirm(sweep, prior);
+  ASSERT_EQ(result.status, RelocalizationStatus::found);
+  EXPECT_TRUE(is_near(result.hypotheses.front().pose, truth));
+
+  // Where the rest of the circle should have shown more than was seen, one sighting is not enough.
+  sweep.views = all_round;
+  EXPECT_EQ(relocalizer.confirm(sweep, prior).status, RelocalizationStatus::not_found);
+}
+
+TEST(Relocalizer, IsNotTalkedIntoOneOfTwoPlacesByABeliefThatFitsNeither) {
+  const SweepMaker make_sweep = half_turn_room();
+  RandomStream random(5, "talked into");
+  const Pose2 truth{3.0, 2.5, 0.4};
+  const Sweep sweep = make_sweep(truth, random);
+  const Eigen::Vector3d sigma(0.05, 0.05, from_deg(2.0));
+  // Nearer to the truth's twin, by far, and at neither.
+  const PlacePrior place{{{{8.0, 4.0, 0.4 + kPi}, sigma.cwiseAbs2().asDiagonal(), 0.5}}};
+  const Relocalization result = relocalizer_for(make_sweep).solve(sweep, place);
+  EXPECT_EQ(result.status, RelocalizationStatus::ambiguous);
+  EXPECT_NEAR(result.hypotheses.at(0).weight, 0.5, 0.02);
+}
+
+TEST(Relocalizer, TakesTheOneOfTwoPlacesThatTheSweepBeforeLeavesOpen) {
+  const SweepMaker make_sweep = half_turn_room();
+  RandomStream random(6, "left open");
+  const Pose2 truth{3.0, 2.5, 0.4};
+  const Sweep sweep = make_sweep(truth, random);
+  const Eigen::Vector3d sigma(0.1, 0.1, from_deg(5.0));
+  const PlacePrior place{{{{3.1, 2.4, 0.43}, sigma.cwiseAbs2().asDiagonal(), 0.9}}};
+  const Relocalization result = relocalizer_for(make_sweep).solve(sweep, place);
   ASSERT_EQ(result.status, RelocalizationStatus::found);
   EXPECT_TRUE(is_near(result.hypotheses.front().pose, truth));
 }

@@ -91,7 +91,7 @@ TEST(Recovery, ARobotThatSeesNoLandmarkGivesUpAndSaysSo) {
   setup.recovery.sweeps = 1;
   setup.recovery.tilt = from_deg(-80);
   RecoveryEvents log;
-  EXPECT_EQ(run_mission(setup, 1, {&log}), Outcome::stuck);
+  EXPECT_EQ(run_mission(setup, 1, {&log}), Outcome::lost);
   EXPECT_TRUE(log.has(EventKind::lost));
   EXPECT_FALSE(log.has(EventKind::recovered));
 }
@@ -197,7 +197,7 @@ TEST(Recovery, ThereIsAnExplorationBetweenTwoSweepsAndNoneAfterTheLast) {
   setup.recovery.sweeps = 3;
   setup.recovery.tilt = from_deg(-80);
   Search search;
-  EXPECT_EQ(run_mission(setup, 1, {&search}), Outcome::stuck);
+  EXPECT_EQ(run_mission(setup, 1, {&search}), Outcome::lost);
   EXPECT_EQ(search.hypotheses.size(), 3U);
   EXPECT_EQ(search.exploration_m.size(), 2U);
 }
@@ -209,9 +209,48 @@ TEST(Recovery, WithoutARingItStaysWhereItIs) {
   setup.recovery.sweeps = 2;
   setup.recovery.tilt = from_deg(-80);
   Search search;
-  EXPECT_EQ(run_mission(setup, 1, {&search}), Outcome::stuck);
+  EXPECT_EQ(run_mission(setup, 1, {&search}), Outcome::lost);
   EXPECT_EQ(search.hypotheses.size(), 2U);
   EXPECT_TRUE(search.exploration_m.empty());
+}
+
+/// What a kidnapped robot said, over seeds.
+struct Kidnappings {
+  int said = 0;
+  int wrong_recoveries = 0;
+  int at_a_wrong_goal = 0;
+  double greatest_unsaid_s = 0.0;
+};
+
+Kidnappings kidnapped(const std::string& world, const std::string& route, int seeds) {
+  const MissionSetup setup =
+      load_mission(std::string(VIGIA_SOURCE_DIR) + "/config/missions/armingol-room.yaml",
+                   {world, route, "planner.policy=fuzzy", "disturbances.kidnapping=realistic",
+                    "start={position_m: [1, 1], heading_deg: 0}", "timeout_s=200"});
+  Kidnappings counts;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    evaluation::DriveScorer scorer;
+    const Outcome outcome = run_mission(setup, static_cast<std::uint64_t>(seed), {&scorer});
+    const auto& score = scorer.score().localizers.at("ekf");
+    counts.said += score.loss.said;
+    counts.wrong_recoveries += score.loss.wrong_recoveries;
+    if (outcome == Outcome::arrived && score.position_final_m > 0.5) ++counts.at_a_wrong_goal;
+    counts.greatest_unsaid_s = std::max(counts.greatest_unsaid_s, score.loss.unsaid_s);
+  }
+  return counts;
+}
+
+TEST(Recovery, InARoomThatLooksTheSameFromFourPlacesNoneIsTakenForTheOnlyOne) {
+  const Kidnappings counts = kidnapped(
+      "world={name: square, room: {width_m: 6, depth_m: 6, height_m: 2.8}, landmarks: ["
+      "{id: 1, kind: disc, centre_m: [6, 3, 1.8], normal_deg: 180, radius_m: 0.1}, "
+      "{id: 2, kind: disc, centre_m: [3, 6, 1.8], normal_deg: -90, radius_m: 0.1}, "
+      "{id: 3, kind: disc, centre_m: [0, 3, 1.8], normal_deg: 0, radius_m: 0.1}, "
+      "{id: 4, kind: disc, centre_m: [3, 0, 1.8], normal_deg: 90, radius_m: 0.1}]}",
+      "route={goal_m: [5, 5], via_m: [[5, 1], [1, 5], [5, 1.2], [1, 1.2], [1, 5]]}", 6);
+  EXPECT_GE(counts.said, 6);
+  EXPECT_EQ(counts.wrong_recoveries, 0);
+  EXPECT_EQ(counts.at_a_wrong_goal, 0);
 }
 
 TEST(Mission, WithTheServosFeedForwardItsTargetStaysCentred) {

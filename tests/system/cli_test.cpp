@@ -77,7 +77,8 @@ INSTANTIATE_TEST_SUITE_P(
                    "unknown option '--sede'; did you mean '--seed'? (options: --help, --seed"},
         WrongUsage{"Argument", "check a.yaml b.yaml", "'b.yaml' is one argument too many"},
         WrongUsage{"Tracker", "track --tracker dics x.png",
-                   "found 'dics', must be one of disc, ellipse, correlation, pattern, tag; did you "
+                   "found 'dics', must be one of disc, ellipse, correlation, pattern, tag, "
+                   "field_scan; did you "
                    "mean 'disc'?"},
         WrongUsage{"Policy", "plan x.yaml --policy nearst",
                    "found 'nearst', must be one of fixed, random, nearest, greedy, fuzzy, pattern; "

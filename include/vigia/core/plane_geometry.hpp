@@ -40,6 +40,9 @@ bool segments_meet(const Eigen::Vector2d& p, const Eigen::Vector2d& q, const Eig
 /// Whether a point lies inside a polygon of either orientation (even-odd rule).
 bool inside_polygon(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& polygon);
 
+/// Area of a simple polygon of either orientation.
+double polygon_area(const std::vector<Eigen::Vector2d>& polygon);
+
 /// Distance from a point to the outline of a polygon.
 double distance_to_outline(const Eigen::Vector2d& p, const std::vector<Eigen::Vector2d>& polygon);
 

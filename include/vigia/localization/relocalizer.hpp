@@ -46,6 +46,12 @@ struct Sweep {
   std::vector<Shot> views;
 };
 
+/// What is known of the robot's place before a sweep: weighted Gaussians. What their weights lack
+/// to one lies evenly over the building and all headings.
+struct PlacePrior {
+  std::vector<PoseHypothesis> components;
+};
+
 enum class RelocalizationStatus {
   found,      ///< one pose explains the sweep far better than any other
   ambiguous,  ///< several do
@@ -67,9 +73,12 @@ class Relocalizer {
   Relocalizer(LandmarkMap map, FloorPlan plan, const RigOnGround& on_ground,
               const RelocalizerParams& params);
 
-  /// With a @p prior one sighting is enough, and poses it holds unlikely weigh less; without, at
-  /// least two sightings of different landmarks are needed.
-  Relocalization solve(const Sweep& sweep, const std::optional<Prior>& prior = std::nullopt) const;
+  /// Every pose that explains sightings of at least two different landmarks, weighed by what it
+  /// explains and by @p place, which holds no pose impossible.
+  Relocalization solve(const Sweep& sweep, const PlacePrior& place = {}) const;
+  /// Whether the sweep bears out @p prior: one sighting is enough, landmarks that it should have
+  /// shown and did not must be fewer than those it shows. It says nothing about other poses.
+  Relocalization confirm(const Sweep& sweep, const Prior& prior) const;
 
  private:
   struct Sighting {
@@ -84,11 +93,18 @@ class Relocalizer {
   struct Hypothesis {
     Fit fit;
     std::vector<Sighting> matches;
+    int missed = 0;  ///< landmarks that the sweep should have shown
     double log_weight = 0.0;
   };
 
-  std::vector<Pose2> seeds(const std::vector<EllipseObservation>& all,
-                           const std::optional<Prior>& prior) const;
+  std::vector<Hypothesis> hypotheses(const Sweep& sweep,
+                                     const std::vector<EllipseObservation>& sightings,
+                                     const std::vector<Pose2>& seeds,
+                                     const std::optional<Prior>& prior) const;
+  Relocalization weighed(std::vector<Hypothesis> found, std::size_t sightings) const;
+  /// Density of a pose with a fit's covariance, beside that of a place of which nothing is known.
+  double relative_density(const Fit& fit, const PlacePrior& place) const;
+  std::vector<Pose2> seeds(const std::vector<EllipseObservation>& all) const;
   /// Where a sighting stands in the base frame if it is that landmark.
   struct DiscPlace {
     std::size_t sighting;

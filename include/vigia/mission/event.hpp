@@ -36,6 +36,7 @@ enum class EventKind {
   collided,
   timeout,
   stuck,
+  still_lost,  ///< the robot has looked around in vain
 };
 
 std::string_view to_string(EventKind kind);

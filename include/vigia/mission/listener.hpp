@@ -15,7 +15,8 @@
 
 namespace vigia::mission {
 
-enum class Outcome { arrived, collided, timeout, stuck };
+/// lost: the robot has looked around in vain, or what it sees fits several places.
+enum class Outcome { arrived, collided, timeout, stuck, lost };
 
 std::string_view to_string(Outcome outcome);
 

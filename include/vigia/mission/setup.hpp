@@ -50,7 +50,8 @@ struct RecoveryParams {
   double tilt = from_deg(6.0);   ///< of the head during the sweep, rad
   double settle_s = 0.12;        ///< standing still before a picture counts
   double explained_share = 0.5;  ///< of the discs that a sweep shows, by the pose that is believed
-  int sweeps = 6;                ///< given up (outcome stuck) after so many without a result
+  int sweeps = 6;                ///< given up (outcome lost) after so many without a result
+  double ring_probability = 0.99;  ///< of being elsewhere, by the ring, at which belief is lost
 };
 
 /// A mission, validated.

@@ -249,9 +249,9 @@
     drawScale(to);
     drawMoment();
   }
-  const grave = new Set(["lost", "kidnapped", "collided", "stuck", "timeout", "target_lost", "blocked"]);
+  const grave = new Set(["lost", "kidnapped", "collided", "stuck", "still_lost", "timeout", "target_lost", "blocked"]);
   function drawEvent(to, run, event) {
-    const sign = { lost: "?", recovered: "✓", kidnapped: "⇝", collided: "✕", stuck: "✕", stop: "■" }[event.kind];
+    const sign = { lost: "?", recovered: "✓", kidnapped: "⇝", collided: "✕", stuck: "✕", still_lost: "✕", stop: "■" }[event.kind];
     if (!sign) return;
     const i = tickAt(run, event.t);
     to.fillStyle = grave.has(event.kind) ? colours.mark : colours.muted;
