@@ -83,8 +83,6 @@ SceneContent::SceneContent(const WorldMap& world, const Appearance& look, std::u
   for (const Clutter& clutter : look.clutter) paint(clutter);
   for (const Landmark& landmark : world.landmarks.all()) hang(landmark, look);
   if (world.field) lay_out(*world.field, world.plan, look);
-  if (look.ceiling)
-    ceiling = {*look.ceiling, world.plan.ceiling_m(), world.plan.faces().size() + 1};
   if (look.light_kelvin != Appearance{}.light_kelvin) shine(lamp_gains(look.light_kelvin));
 }
 

@@ -15,6 +15,7 @@
 
 #include "vigia/core/world_map.hpp"
 #include "vigia/sim/appearance.hpp"
+#include "vigia/sim/ceiling_truth.hpp"
 
 namespace vigia::sim {
 

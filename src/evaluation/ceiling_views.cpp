@@ -26,10 +26,9 @@ WorldMap hall_of(const CeilingSetting& setting) {
   return world;
 }
 
-std::shared_ptr<const sim::Appearance> look_of(const CeilingSetting& setting) {
-  auto look = std::make_shared<sim::Appearance>();
-  look->contrast = setting.contrast;
-  look->ceiling = setting.ceiling;
+sim::Appearance look_of(const CeilingSetting& setting) {
+  sim::Appearance look;
+  look.contrast = setting.contrast;
   return look;
 }
 
@@ -99,7 +98,7 @@ tracking::PatchFinderParams CeilingSetting::finder() const {
 CeilingHall::CeilingHall(const CeilingSetting& setting)
     : setting_(setting),
       rMc_(localization::corrected(setting.known_camera(), setting.true_errors()).rMc),
-      scene_(hall_of(setting), look_of(setting), setting.seed) {}
+      scene_(hall_of(setting), look_of(setting), setting.ceiling, setting.seed) {}
 
 std::unique_ptr<imaging::Frame> CeilingHall::expose(const Pose2& pose, std::int64_t number) const {
   return scene_.expose(to_isometry(pose) * rMc_, setting_.camera, Stamp{number}, setting_.imaging);

@@ -7,8 +7,7 @@
 
 #include "vigia/core/camera_model.hpp"
 #include "vigia/core/random.hpp"
-#include "vigia/sim/ceiling_truth.hpp"
-#include "vigia/sim/scene.hpp"
+#include "vigia/sim/ceiling_scene.hpp"
 
 namespace vigia::sim {
 namespace {
@@ -21,11 +20,10 @@ WorldMap wide_hall() {
   return world;
 }
 
-std::shared_ptr<const Appearance> patched(const CeilingTruth& truth) {
-  auto look = std::make_shared<Appearance>();
-  look->contrast = 0.0;
-  look->ceiling = truth;
-  return look;
+CeilingScene patched(const CeilingTruth& truth) {
+  Appearance look;
+  look.contrast = 0.0;
+  return {wide_hall(), look, truth, 3};
 }
 
 ImagingParams imaging_of(double noise_sigma) {
@@ -45,7 +43,7 @@ TEST(CeilingRendering, APatchHasItsAreaAndItsMiddleWhereTheRuleHangsIt) {
     truth.grid.polarity = polarity;
     truth.grid.placement_m = 0.01;
     truth.grid.placement_turn = 0.05;
-    const Scene scene(wide_hall(), patched(truth), 3);
+    const CeilingScene scene = patched(truth);
     const Eigen::Isometry3d wMc = upward(123.1, -211.8, 40.0);
     const vpImage<unsigned char> image =
         imaging::grey_image(*scene.expose(wMc, camera(554.26), {}, imaging_of(0.0)));
@@ -74,7 +72,7 @@ TEST(CeilingRendering, WindowsAreCropsOfTheFullFrame) {
   CeilingTruth truth;
   truth.lamp_pitch_m = 2.0;
   truth.spurious = 0.5;
-  const Scene scene(wide_hall(), patched(truth), 3);
+  const CeilingScene scene = patched(truth);
   const auto frame = [&] {
     return scene.expose(upward(0.4, 0.3, 20.0), camera(554.26), {}, imaging_of(4.0));
   };

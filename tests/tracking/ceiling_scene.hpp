@@ -6,14 +6,14 @@
 #include "vigia/core/angle.hpp"
 #include "vigia/core/world_map.hpp"
 #include "vigia/sim/appearance.hpp"
-#include "vigia/sim/scene.hpp"
+#include "vigia/sim/ceiling_scene.hpp"
 
 namespace vigia::tracking {
 
 /// A hall with patches 2.2 m above a camera of 60° that looks up.
 struct CeilingScene {
   explicit CeilingScene(const sim::CeilingTruth& ceiling, double contrast)
-      : truth(ceiling), scene(hall(), look(ceiling, contrast), 3) {
+      : truth(ceiling), scene(hall(), look(contrast), ceiling, 3) {
     camera.px = camera.py = 0.5 * camera.width / std::tan(from_deg(30.0));
   }
 
@@ -22,11 +22,9 @@ struct CeilingScene {
     world.plan = FloorPlan({{-50, -50}, {50, -50}, {50, 50}, {-50, 50}}, 2.7, {}, {});
     return world;
   }
-  static std::shared_ptr<const sim::Appearance> look(const sim::CeilingTruth& ceiling,
-                                                     double contrast) {
-    auto look = std::make_shared<sim::Appearance>();
-    look->contrast = contrast;
-    look->ceiling = ceiling;
+  static sim::Appearance look(double contrast) {
+    sim::Appearance look;
+    look.contrast = contrast;
     return look;
   }
   std::unique_ptr<imaging::Frame> expose(const Pose2& pose, std::int64_t number) const {
@@ -38,7 +36,7 @@ struct CeilingScene {
   }
 
   sim::CeilingTruth truth;
-  sim::Scene scene;
+  sim::CeilingScene scene;
   Intrinsics camera;
 };
 

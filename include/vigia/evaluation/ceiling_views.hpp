@@ -7,6 +7,7 @@
 
 #include "vigia/core/image_shift.hpp"
 #include "vigia/localization/ceiling_model.hpp"
+#include "vigia/sim/ceiling_scene.hpp"
 #include "vigia/sim/ceiling_truth.hpp"
 #include "vigia/sim/scene.hpp"
 #include "vigia/tracking/edge_flow.hpp"
@@ -44,7 +45,7 @@ class CeilingHall {
  private:
   CeilingSetting setting_;
   Eigen::Isometry3d rMc_;  ///< true
-  sim::Scene scene_;
+  sim::CeilingScene scene_;
 };
 
 /// What one frame of a drive shows.

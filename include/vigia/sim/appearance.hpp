@@ -1,12 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
-
-#include "vigia/sim/ceiling_truth.hpp"
 
 namespace vigia::sim {
 
@@ -60,8 +57,7 @@ struct Appearance {
   int adverts = 0;               ///< boards in bright colours that stand round it
   int spectators = 0;            ///< people in bright clothes who do
   std::vector<Stripe> stripes;
-  std::vector<Clutter> clutter;         ///< named in the file and drawn at random
-  std::optional<CeilingTruth> ceiling;  ///< patches and lamps on the ceiling
+  std::vector<Clutter> clutter;  ///< named in the file and drawn at random
 };
 
 }  // namespace vigia::sim
