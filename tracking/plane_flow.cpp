@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <opencv2/imgproc.hpp>
 
 #include "vigia/core/angle.hpp"
