@@ -9,6 +9,8 @@ const std::vector<Paper>& papers() {
       {"quixote", "pose from one view of the nine-point colour pattern", &reproduce_quixote},
       {"minho", "a field's lines in a mirror camera: grid match, MCL, MUREA, kidnapping",
        &reproduce_minho},
+      {"bais", "one landmark from two points: running fix against range and bearing",
+       &reproduce_bais},
       {"chonbuk", "patches on a ceiling without identity, edge-based optical flow, their fusion",
        &reproduce_chonbuk},
   };

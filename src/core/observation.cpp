@@ -43,10 +43,13 @@ ImageExtent extent_of(const PointsObservation& seen, const Landmark* landmark) {
 }  // namespace
 
 ImageExtent image_extent(const Observation& observation, const Landmark* landmark) {
-  if (const auto* points = std::get_if<PointsObservation>(&observation))
-    return extent_of(*points, landmark);
-  const Ellipse& ellipse = std::get<EllipseObservation>(observation).ellipse;
-  return {{ellipse.u, ellipse.v}, ellipse.a};
+  return std::visit(
+      Overloaded{[](const EllipseObservation& seen) {
+                   return ImageExtent{{seen.ellipse.u, seen.ellipse.v}, seen.ellipse.a};
+                 },
+                 [&](const PointsObservation& seen) { return extent_of(seen, landmark); },
+                 [](const FieldObservation&) { return ImageExtent{}; }},
+      observation);
 }
 
 const Shot& shot_of(const Observation& observation) {

@@ -21,7 +21,8 @@ EstimatorSetup estimator_setup(const mission::MissionSetup& setup) {
           setup.robot.robot.odometry,
           setup.robot.robot.sensor,
           setup.prior ? setup.prior->covariance : covariance_of_anywhere(setup.world.plan),
-          setup.prior.has_value()};
+          setup.prior.has_value(),
+          setup.world.field};
 }
 
 }  // namespace

@@ -31,7 +31,9 @@ int& count_of(LocalizerScore& score, localization::UpdateStatus status) {
 }  // namespace
 
 EstimatorScorer::EstimatorScorer(EstimatorSetup setup)
-    : setup_(std::move(setup)), bound_(setup_.prior_covariance, setup_.on_ground, setup_.sensor) {}
+    : setup_(std::move(setup)), bound_(setup_.prior_covariance, setup_.on_ground, setup_.sensor) {
+  if (setup_.field) field_.emplace(*setup_.field);
+}
 
 void EstimatorScorer::add(const mission::EstimatorTick& tick, std::size_t localizer) {
   const Belief& belief = *tick.localizers[localizer].belief;
@@ -65,6 +67,12 @@ std::optional<LookId> EstimatorScorer::count_updates(const mission::EstimatorTic
 /// What the image taught at best, whatever the localizer took it for.
 void EstimatorScorer::bound_by(const Observation& observation,
                                const mission::ExposureTruth& truth) {
+  if (const auto* seen = std::get_if<FieldObservation>(&observation); seen && field_) {
+    // Of the points as they truly lie: on the map's lines or by chance.
+    bound_.update(
+        field_->linearise(seen->scan.points, truth.pose, field_->params().clutter).complete);
+    return;
+  }
   const Landmark* landmark =
       true_landmark(observation, setup_.landmarks, setup_.on_ground, truth.pose, truth.bias);
   if (landmark != nullptr) bound_.update(truth.pose, truth.bias, *landmark, observation);

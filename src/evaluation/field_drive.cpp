@@ -26,7 +26,7 @@ constexpr double kPriorTurn = 0.0524;
 struct Rider {
   std::function<void(Stamp, const std::optional<Prior>&)> reset;
   std::function<void(const OdometryIncrement&)> predict;
-  std::function<void(const localization::FieldScan&)> update;
+  std::function<void(const FieldScan&)> update;
   std::function<const Belief&()> belief;
 };
 
@@ -36,7 +36,7 @@ Rider rider_of(std::shared_ptr<Localizer> localizer) {
             localizer->reset(stamp, prior);
           },
           [localizer](const OdometryIncrement& u) { localizer->predict(u); },
-          [localizer](const localization::FieldScan& scan) { localizer->update(scan); },
+          [localizer](const FieldScan& scan) { localizer->update(scan); },
           [localizer]() -> const Belief& { return localizer->belief(); }};
 }
 
@@ -46,8 +46,7 @@ Rider odometry_rider(const OdometryNoise& noise) {
             localizer->reset(stamp, prior);
           },
           [localizer](const OdometryIncrement& u) { localizer->predict(u); },
-          [](const localization::FieldScan&) {},
-          [localizer]() -> const Belief& { return localizer->belief(); }};
+          [](const FieldScan&) {}, [localizer]() -> const Belief& { return localizer->belief(); }};
 }
 
 Rider make_rider(FieldLocalizer localizer, const localization::FieldModel& model,

@@ -113,9 +113,8 @@ void add_goal_information(const FieldFrameParams& params, const Pose2& truth,
                  drange * drange.transpose() / (sigma_r * sigma_r);
 }
 
-localization::ColourSighting sight(const FieldFrameParams& params, const Pose2& truth,
-                                   FieldColour colour, const Eigen::Vector2d& at,
-                                   RandomStream& random) {
+ColourSighting sight(const FieldFrameParams& params, const Pose2& truth, FieldColour colour,
+                     const Eigen::Vector2d& at, RandomStream& random) {
   const Eigen::Vector2d to = at - truth.position();
   const double range = to.norm();
   const double sigma_b = from_deg(params.bearing_sigma_deg);
@@ -159,8 +158,7 @@ FieldFrame draw_field_frame(const FieldMap& map, const FieldFrameParams& params,
     const double bearing = hit.bearing + sigma_b * random.normal();
     const double range = std::max(0.05, params.range_scale * hit.range_m +
                                             range_sigma(params, hit.range_m) * random.normal());
-    frame.scan.points.push_back(
-        localization::polar_point(bearing, range, sigma_b, range_sigma(params, range)));
+    frame.scan.points.push_back(polar_point(bearing, range, sigma_b, range_sigma(params, range)));
     if (!hit.normal.isZero()) add_information(params, truth, hit, frame.information);
   }
   if (params.goals)

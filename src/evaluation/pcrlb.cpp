@@ -2,6 +2,8 @@
 
 #include <cassert>
 
+#include <Eigen/LU>
+
 #include "vigia/localization/motion.hpp"
 
 namespace vigia::evaluation {
@@ -45,6 +47,15 @@ bool PosteriorBound::update(const Pose2& truth, const localization::LookBias& bi
     P_ = localization::updated_covariance(P_, seen);
     assert(P_.allFinite());
   });
+}
+
+void PosteriorBound::update(const Eigen::Matrix3d& information) {
+  const Eigen::Matrix3d pose = covariance();
+  // (P⁻¹ + I)⁻¹ without P⁻¹, which need not exist.
+  const Eigen::Matrix3d updated =
+      pose * (Eigen::Matrix3d::Identity() + information * pose).inverse();
+  P_.topLeftCorner<3, 3>() = 0.5 * (updated + updated.transpose());
+  assert(P_.allFinite());
 }
 
 }  // namespace vigia::evaluation

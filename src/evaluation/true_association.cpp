@@ -38,7 +38,8 @@ const Landmark* true_landmark(const Observation& observation, const LandmarkMap&
       Overloaded{[&](const EllipseObservation& seen) {
                    return nearest_disc(seen, map, on_ground, truth, bias);
                  },
-                 [&](const PointsObservation& seen) { return map.find(seen.landmark); }},
+                 [&](const PointsObservation& seen) { return map.find(seen.landmark); },
+                 [](const FieldObservation&) -> const Landmark* { return nullptr; }},
       observation);
 }
 

@@ -85,7 +85,8 @@ std::vector<Pose2> resect(const std::array<Bearing, 3>& bearings) {
 std::optional<LandmarkId> named_landmark(const Observation& observation) {
   return std::visit(
       Overloaded{[](const EllipseObservation&) { return std::optional<LandmarkId>(); },
-                 [](const PointsObservation& seen) { return std::optional(seen.landmark); }},
+                 [](const PointsObservation& seen) { return std::optional(seen.landmark); },
+                 [](const FieldObservation&) { return std::optional<LandmarkId>(); }},
       observation);
 }
 
@@ -114,7 +115,8 @@ std::optional<Eigen::Vector2d> centre_shift(const Observation& observation,
                          {point.point.label, image->uv, Eigen::Matrix2d::Identity()});
                    }
                    return Eigen::Vector2d(image_extent(predicted).centre - *centre);
-                 }},
+                 },
+                 [](const FieldObservation&) { return std::optional<Eigen::Vector2d>(); }},
       observation);
 }
 
@@ -261,8 +263,11 @@ std::optional<BearingOnlyLocalizer::Sightline> BearingOnlyLocalizer::sightline(
 }
 
 UpdateResult BearingOnlyLocalizer::update(const Observation& observation) {
+  if (std::holds_alternative<FieldObservation>(observation)) return {};
   const Shot& shot = shot_of(observation);
-  const bool usable = std::visit([](const auto& seen) { return is_usable(seen); }, observation);
+  const bool usable = std::visit(Overloaded{[](const FieldObservation&) { return false; },
+                                            [](const auto& seen) { return is_usable(seen); }},
+                                 observation);
   if (!usable) return {UpdateStatus::degenerate, std::nullopt, 0.0, 0};
   if (shot.stamp < stamp_ - Duration::from_seconds(params_.history_s))
     return {UpdateStatus::too_late, std::nullopt, 0.0, 0};

@@ -176,14 +176,6 @@ double sighting_log_density(const ColourSighting& seen, const Eigen::Vector2d& t
 
 }  // namespace
 
-FieldPoint polar_point(double bearing, double range_m, double bearing_sigma, double range_sigma_m) {
-  const Eigen::Vector2d u = unit_vector(bearing);
-  const Eigen::Vector2d across(-u.y(), u.x());
-  const double across_m = bearing_sigma * range_m;
-  return {range_m * u, range_sigma_m * range_sigma_m * u * u.transpose() +
-                           across_m * across_m * across * across.transpose()};
-}
-
 FieldModel::FieldModel(const FieldMap& map, const FieldModelParams& params)
     : map_(map),
       params_(params),

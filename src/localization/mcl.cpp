@@ -393,31 +393,49 @@ std::vector<double> Mcl::draw_motion_noise(const FieldScan& scan) {
   return log_weights;
 }
 
-void Mcl::inject_about(const FieldFix& fix, int count, double log_prior, const FieldScan& scan) {
-  const double twin = model_->lines_symmetric() ? 0.5 : 0.0;
+std::vector<PoseHypothesis> Mcl::predicted_hypotheses() const {
+  std::vector<PoseHypothesis> all = hypotheses();
+  for (PoseHypothesis& one : all) one.covariance += turned(motion_noise_, one.pose.theta);
+  return all;
+}
+
+double Mcl::MixturePrior::density(const Pose2& pose) const {
+  double sum = anywhere;
+  for (const PoseHypothesis& one : known)
+    sum += one.weight * std::exp(log_gaussian(difference(pose, one.pose), one.covariance));
+  return sum;
+}
+
+void Mcl::inject_about(const FieldFix& fix, int count, const MixturePrior& prior,
+                       const FieldScan& scan) {
   const Eigen::Matrix3d wide = kWidening * kWidening * fix.covariance;
   const Eigen::Matrix3d root = wide.llt().matrixL();
   for (int i = 0; i < count; ++i) {
     const Pose2 pose = sample_about(fix.pose, root, random_);
     const double log_proposal = log_gaussian(difference(pose, fix.pose), wide);
-    particles_.push_back({pose, std::exp(std::min(600.0, log_prior - log_proposal)) / count, twin});
+    const double here = prior.density(pose);
+    const double there =
+        model_->lines_symmetric() ? prior.density(FieldModel::half_turned(pose)) : 0.0;
+    const double log_prior = std::log(here + there);
+    particles_.push_back({pose, std::exp(std::min(600.0, log_prior - log_proposal)) / count,
+                          there / (here + there)});
     log_likelihoods_.push_back(log_weight(scan, particles_.back()));
   }
 }
 
-/// Samples of what the image suggests, weighed as samples of the mixture prior.
-void Mcl::inject(const FieldScan& scan) {
+/// Samples of what the image suggests, weighed as samples of the mixture prior. Those where the
+/// particles are know what the particles do of the half: where these are too few for a narrow
+/// likelihood, samples of a uniform prior would outweigh them and forget it.
+void Mcl::inject(const FieldScan& scan, std::vector<PoseHypothesis> expected) {
   std::vector<FieldMatcher::Suggestion> suggestions = matcher_.match(scan);
   if (suggestions.empty()) return;
   const FieldMap& map = model_->map();
   const bool nothing_known = !fast_ && !given_prior_;
   const double p = nothing_known ? 0.5 : params_.kidnapped;
-  double log_uniform = std::log(p / (map.length_m * map.width_m * 2.0 * kPi));
-  if (model_->lines_symmetric()) {
-    // A particle stands for two poses.
-    log_uniform += std::log(2.0);
-    suggestions = without_twins(suggestions);
-  }
+  if (nothing_known) expected.clear();
+  for (PoseHypothesis& one : expected) one.weight *= 1.0 - p;
+  const MixturePrior prior{std::move(expected), p / (map.length_m * map.width_m * 2.0 * kPi)};
+  if (model_->lines_symmetric()) suggestions = without_twins(suggestions);
   for (Particle& particle : particles_) particle.weight *= 1.0 - p;
   // What is unlikely here may be all that agrees with the particles.
   constexpr double kOddShare = 0.1;
@@ -426,7 +444,7 @@ void Mcl::inject(const FieldScan& scan) {
   for (const auto& s : suggestions)
     inject_about(s.fix,
                  std::max(10, static_cast<int>(params_.injected * (kOddShare + s.weight) / total)),
-                 log_uniform, scan);
+                 prior, scan);
 }
 
 void Mcl::resample() {
@@ -486,14 +504,18 @@ void Mcl::update(const FieldScan& scan) {
   belief_.stamp = scan.stamp;
   const bool best = params_.method == MclParams::Method::best;
   if (best) groups_ = model_->groups_of(scan);
+  const bool fallen = fast_ && slow_ && *fast_ < *slow_ - kUsualFall;
+  ++since_check_;
+  const bool check = best && (since_check_ >= params_.check_every || (fallen && since_check_ >= 2));
+  const std::vector<PoseHypothesis> expected =
+      check ? predicted_hypotheses() : std::vector<PoseHypothesis>{};
   log_likelihoods_ = draw_motion_noise(scan);
   for (std::size_t i = 0; i < particles_.size(); ++i)
     log_likelihoods_[i] += log_weight(scan, particles_[i]);
   const std::size_t own = particles_.size();
-  const bool fallen = fast_ && slow_ && *fast_ < *slow_ - kUsualFall;
-  if (best && (++since_check_ >= params_.check_every || (fallen && since_check_ >= 2))) {
+  if (check) {
     since_check_ = 0;
-    inject(scan);
+    inject(scan, expected);
   }
   weigh_by(log_likelihoods_, particles_);
   if (best && model_->lines_symmetric()) fold_twins();
@@ -574,7 +596,7 @@ void Mcl::refresh_belief() {
   belief_.pose = clusters.front().pose;
   belief_.covariance = clusters.front().covariance;
   belief_.hypotheses.clear();
-  belief_.lost_probability = 1.0 - clusters.front().weight;
+  belief_.lost_probability = std::clamp(1.0 - clusters.front().weight, 0.0, 1.0);
   belief_.status = BeliefStatus::tracking;
   if (belief_.position_sigma() > params_.lost_sigma_m || clusters.front().weight < 0.3) {
     const Spread all = spread_of_all();

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "vigia/core/overloaded.hpp"
 #include "vigia/localization/chi_square.hpp"
 
 namespace vigia::localization {
@@ -19,29 +20,30 @@ MeasurementModel::MeasurementModel(LandmarkMap map, const RigOnGround& on_ground
 
 Association MeasurementModel::associate(const Observation& observation,
                                         const LookState& state) const {
-  return std::visit(
-      [&](const auto& seen) {
-        auto found = localization::associate(*this, seen, state);
-        Association association{found.result, std::nullopt};
-        if (found.match) association.match = *std::move(found.match);
-        return association;
-      },
-      observation);
+  return std::visit(Overloaded{[](const FieldObservation&) { return Association{}; },
+                               [&](const auto& seen) {
+                                 auto found = localization::associate(*this, seen, state);
+                                 Association association{found.result, std::nullopt};
+                                 if (found.match) association.match = *std::move(found.match);
+                                 return association;
+                               }},
+                    observation);
 }
 
 std::optional<Match> MeasurementModel::match(const Observation& observation,
                                              const Landmark& landmark) const {
-  return std::visit(
-      [&](const auto& seen) -> std::optional<Match> {
-        return localization::match(*this, seen, landmark);
-      },
-      observation);
+  return std::visit(Overloaded{[](const FieldObservation&) { return std::optional<Match>(); },
+                               [&](const auto& seen) -> std::optional<Match> {
+                                 return localization::match(*this, seen, landmark);
+                               }},
+                    observation);
 }
 
 std::optional<double> MeasurementModel::log_likelihood(const Observation& observation,
                                                        const Pose2& pose) const {
   return std::visit(
-      [&](const auto& seen) { return localization::log_likelihood(*this, seen, pose); },
+      Overloaded{[](const FieldObservation&) { return std::optional<double>(); },
+                 [&](const auto& seen) { return localization::log_likelihood(*this, seen, pose); }},
       observation);
 }
 

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 
+#include "vigia/core/random.hpp"
 #include "vigia/localization/ekf.hpp"
+#include "vigia/localization/field_localizer.hpp"
 #include "vigia/localization/odometry_localizer.hpp"
 #include "vigia/localization/pattern_fix.hpp"
 
@@ -21,6 +23,10 @@ bool has_landmarks(const MissionSetup& setup) {
   return !setup.world.landmarks.all().empty();
 }
 
+bool has_field(const MissionSetup& setup) {
+  return setup.world.field.has_value();
+}
+
 bool has_patterns(const MissionSetup& setup) {
   const auto& landmarks = setup.world.landmarks.all();
   return std::any_of(landmarks.begin(), landmarks.end(), [](const Landmark& landmark) {
@@ -28,21 +34,40 @@ bool has_patterns(const MissionSetup& setup) {
   });
 }
 
-LocalizerPtr make_ekf(const MissionSetup& setup) {
+LocalizerPtr make_ekf(const MissionSetup& setup, std::uint64_t /*seed*/) {
   return std::make_unique<localization::EkfLocalizer>(setup.world.landmarks, setup.on_ground(),
                                                       setup.ekf, setup.world.plan);
 }
 
-LocalizerPtr make_odometry(const MissionSetup& setup) {
+LocalizerPtr make_odometry(const MissionSetup& setup, std::uint64_t /*seed*/) {
   return std::make_unique<localization::OdometryLocalizer>(setup.noise.odometry);
 }
 
-LocalizerPtr make_pattern_fix(const MissionSetup& setup) {
+LocalizerPtr make_pattern_fix(const MissionSetup& setup, std::uint64_t /*seed*/) {
   return std::make_unique<localization::PatternFixLocalizer>(
       setup.world.landmarks, setup.on_ground(), pattern_fix_params(setup));
 }
 
-LocalizerPtr make_bearing_only(const MissionSetup& setup) {
+LocalizerPtr make_field_grid(const MissionSetup& setup, std::uint64_t /*seed*/) {
+  localization::FieldTrackerParams params;
+  params.odometry = setup.noise.odometry;
+  return localization::make_field_tracker(setup.world.field.value_or(FieldMap{}), params);
+}
+
+LocalizerPtr make_mcl(const MissionSetup& setup, std::uint64_t seed) {
+  localization::MclParams params;
+  params.odometry = setup.noise.odometry;
+  return localization::make_mcl(setup.world.field.value_or(FieldMap{}), params,
+                                derive_seed(seed, "mcl"));
+}
+
+LocalizerPtr make_murea(const MissionSetup& setup, std::uint64_t /*seed*/) {
+  localization::MureaLocalizerParams params;
+  params.odometry = setup.noise.odometry;
+  return localization::make_murea(setup.world.field.value_or(FieldMap{}), params);
+}
+
+LocalizerPtr make_bearing_only(const MissionSetup& setup, std::uint64_t /*seed*/) {
   return std::make_unique<localization::BearingOnlyLocalizer>(
       setup.world.landmarks, setup.on_ground(), setup.bearing_only, setup.world.plan);
 }
@@ -73,6 +98,27 @@ const std::vector<LocalizerEntry>& localizers() {
        FirstPose::looks,
        &has_landmarks,
        &make_bearing_only},
+      {{"field_grid",
+        "refined matches of a mirror camera's scans with a field's lines, followed in time as "
+        "weighted hypotheses (after Minho)",
+        "a field in the world"},
+       true,
+       FirstPose::itself,
+       &has_field,
+       &make_field_grid},
+      {{"mcl", "Monte Carlo localization on a field's lines, goals and posts",
+        "a field in the world"},
+       false,
+       FirstPose::itself,
+       &has_field,
+       &make_mcl},
+      {{"murea",
+        "MUREA, evidence accumulated in cells of poses that are divided further and further",
+        "a field in the world"},
+       false,
+       FirstPose::itself,
+       &has_field,
+       &make_murea},
   };
   return table;
 }

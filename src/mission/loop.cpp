@@ -78,7 +78,7 @@ Loop::Loop(const MissionSetup& setup, std::uint64_t seed, const std::vector<List
   EstimatorTick& estimator = tick_.estimator;
   for (const auto& name : setup.localizers) {
     if (name == setup.primary) estimator.primary = localizers_.size();
-    localizers_.push_back(find_name(localizers(), name)->make(setup));
+    localizers_.push_back(find_name(localizers(), name)->make(setup, seed));
     localizers_.back()->reset(estimator.now, setup.prior);
   }
   attention_->follow(navigator_.path());

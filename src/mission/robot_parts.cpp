@@ -7,15 +7,24 @@
 
 namespace vigia::mission {
 
+const char* eye_of(const Camera& camera) {
+  return zoom_calibration(camera.optics) ? "landmark" : "field";
+}
+
 std::vector<CameraFeed> make_feeds(const MissionSetup& setup, const Rig& rig, Duration delay,
                                    Duration processing) {
   const Camera* directed = directed_camera(rig);
   std::vector<CameraFeed> feeds;
   for (const Camera& camera : rig.cameras)
     feeds.emplace_back(camera, delay, processing,
-                       find_name(perception::eyes(), "landmark")
-                           ->make({setup.world.landmarks, setup.on_ground(), setup.noise.sensor,
-                                   setup.tracker, &camera == directed}));
+                       find_name(perception::eyes(), eye_of(camera))
+                           ->make({setup.world.landmarks,
+                                   setup.on_ground(),
+                                   setup.noise.sensor,
+                                   setup.tracker,
+                                   &camera == directed,
+                                   setup.world.field ? &*setup.world.field : nullptr,
+                                   {setup.robot.robot.radius_m, setup.robot.robot.body_height_m}}));
   return feeds;
 }
 

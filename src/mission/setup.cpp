@@ -151,7 +151,8 @@ void describe_localization(ParamVisitor& v, MissionSetup& setup) {
   v.map("bearing_only", setup.bearing_only, "the localizer that learns from bearings alone");
 }
 
-/// Eyes for landmarks read pinhole images; patterns are told apart by their colours.
+/// Eyes for landmarks read pinhole images, the eye for a field those of a mirror in colour;
+/// patterns are told apart by their colours.
 void require_cameras(ParamVisitor& v, const MissionSetup& setup) {
   const auto& landmarks = setup.world.landmarks.all();
   const bool patterns =
@@ -159,10 +160,15 @@ void require_cameras(ParamVisitor& v, const MissionSetup& setup) {
         return std::holds_alternative<PatternShape>(landmark.shape);
       });
   for (const sim::CameraSetup& camera : setup.robot.cameras) {
-    v.require(zoom_calibration(camera.camera.optics).has_value(), "robot",
+    const bool omni = !zoom_calibration(camera.camera.optics).has_value();
+    v.require(!omni || setup.world.field.has_value(), "robot",
               "camera " + std::to_string(camera.camera.id) +
-                  " is omnidirectional, and no eye reads such images; `vigia help eyes` lists the "
-                  "eyes");
+                  " is omnidirectional, and the eye that reads such images needs a `field` in the "
+                  "world; `vigia help eyes` lists the eyes");
+    v.require(!omni || (camera.imaging.colour && !on_head(camera.camera)), "robot",
+              "camera " + std::to_string(camera.camera.id) +
+                  " is omnidirectional: the eye that reads its images needs mount: fixed and "
+                  "colour: true");
     v.require(camera.imaging.colour || !patterns, "robot",
               "the world has colour patterns, but the robot's camera sees grey: it needs "
               "camera.colour: true");

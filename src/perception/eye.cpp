@@ -1,5 +1,6 @@
 #include "vigia/perception/eye.hpp"
 
+#include "field_eye.hpp"
 #include "landmark_eye.hpp"
 
 namespace vigia::perception {
@@ -16,7 +17,10 @@ const std::vector<EyeEntry>& eyes() {
   static const std::vector<EyeEntry> entries{
       {{"landmark", "observes the map's discs, colour patterns and tags, directed or all of them",
         "a perspective camera; patterns need colour"},
-       make<LandmarkEye>}};
+       make<LandmarkEye>},
+      {{"field", "scans a field of play along rays for lines, goals and posts",
+        "an omnidirectional camera in colour, fixed to the base; a field in the world"},
+       make<FieldEye>}};
   return entries;
 }
 

@@ -42,6 +42,14 @@ TEST(PosteriorBound, EqualsTheCovarianceOfAFilterThatSitsOnTheTruth) {
   }
 }
 
+TEST(PosteriorBound, InformationOfThePoseAddsToWhatIsKnown) {
+  PosteriorBound bound(0.04 * Eigen::Matrix3d::Identity(), {}, {});
+  const Eigen::Matrix3d information = Eigen::Vector3d(75.0, 0.0, 25.0).asDiagonal();
+  bound.update(information);
+  EXPECT_TRUE(bound.covariance().isApprox(
+      Eigen::Matrix3d(Eigen::Vector3d(0.01, 0.04, 0.02).asDiagonal()), 1e-12));
+}
+
 TEST(PosteriorBound, ALandmarkWithoutAnImageChangesNothing) {
   PosteriorBound bound(0.01 * Eigen::Matrix3d::Identity(), {}, {});
   const Landmark behind = localization::test::disc(1, -3.0, 0.0, 1.0, 0.0);

@@ -23,7 +23,8 @@ MissionSetup load(const std::string& name, const std::vector<std::string>& overr
 
 TEST(Localizers, EveryNameMakesTheLocalizerOfThatName) {
   const MissionSetup setup = load("quixote-room");
-  for (const LocalizerEntry& entry : localizers()) EXPECT_EQ(entry.make(setup)->name(), entry.name);
+  for (const LocalizerEntry& entry : localizers())
+    EXPECT_EQ(entry.make(setup, 1)->name(), entry.name);
 }
 
 TEST(Localizers, AMissionThatNamesNoneHasTheCheapOnesThatSuitRobotAndWorld) {

@@ -253,6 +253,23 @@ TEST(Recovery, InARoomThatLooksTheSameFromFourPlacesNoneIsTakenForTheOnlyOne) {
   EXPECT_EQ(counts.at_a_wrong_goal, 0);
 }
 
+TEST(Recovery, InACorridorWhereOneLandmarkAtATimeShowsItSaysThatItIsLost) {
+  const Kidnappings counts = kidnapped(
+      "world={name: corridor, room: {width_m: 26, depth_m: 2, height_m: 2.8}, landmarks: ["
+      "{id: 1, kind: disc, centre_m: [3, 2, 1.8], normal_deg: -90, radius_m: 0.1}, "
+      "{id: 2, kind: disc, centre_m: [7, 2, 1.8], normal_deg: -90, radius_m: 0.1}, "
+      "{id: 3, kind: disc, centre_m: [11, 2, 1.8], normal_deg: -90, radius_m: 0.1}, "
+      "{id: 4, kind: disc, centre_m: [15, 2, 1.8], normal_deg: -90, radius_m: 0.1}, "
+      "{id: 5, kind: disc, centre_m: [19, 2, 1.8], normal_deg: -90, radius_m: 0.1}, "
+      "{id: 6, kind: disc, centre_m: [23, 2, 1.8], normal_deg: -90, radius_m: 0.1}]}",
+      "route={goal_m: [25, 1], via_m: []}", 4);
+  EXPECT_GE(counts.said, 4);
+  EXPECT_EQ(counts.wrong_recoveries, 0);
+  EXPECT_EQ(counts.at_a_wrong_goal, 0);
+  // Half a turn along the corridor's axis leaves the ring's side beams as they were.
+  EXPECT_LT(counts.greatest_unsaid_s, 90.0);
+}
+
 TEST(Mission, WithTheServosFeedForwardItsTargetStaysCentred) {
   const MissionSetup setup = load_mission(
       std::string(VIGIA_SOURCE_DIR) + "/config/missions/armingol-room.yaml",

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "vigia/core/field_scan.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/core/shot.hpp"
 
@@ -50,8 +51,15 @@ struct PointsObservation {
   double confidence = 1.0;  ///< of the identity, in [0, 1]
 };
 
-/// What tracking hands to localization: closed by the geometry of the feature.
-using Observation = std::variant<EllipseObservation, PointsObservation>;
+/// What one image of a mirror camera shows of a field of play, already on the floor in the robot's
+/// frame: a line point is the middle between two edges on the floor, which in the image it is not.
+struct FieldObservation {
+  Shot shot;
+  FieldScan scan;  ///< at the shot's stamp
+};
+
+/// What eyes hand to localization: closed by the geometry of the feature.
+using Observation = std::variant<EllipseObservation, PointsObservation, FieldObservation>;
 
 /// Where a landmark lies in the image and how wide it is.
 struct ImageExtent {
@@ -59,8 +67,8 @@ struct ImageExtent {
   double radius_px = 0.0;  ///< of extent_radius(): the longer semi-axis of a slanted landmark
 };
 
-/// The extent that an observation shows. A pattern of which one ring alone is seen is scaled up to
-/// the whole by @p landmark, where it is known.
+/// The extent that an observation shows; a field's has none and is empty. A pattern of which one
+/// ring alone is seen is scaled up to the whole by @p landmark, where it is known.
 ImageExtent image_extent(const Observation& observation, const Landmark* landmark = nullptr);
 
 /// The shot that shows it.

@@ -4,11 +4,13 @@
 #include <string>
 #include <vector>
 
+#include "vigia/core/field_map.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/core/rig.hpp"
 #include "vigia/core/sensor_noise.hpp"
 #include "vigia/evaluation/loss_score.hpp"
 #include "vigia/evaluation/pcrlb.hpp"
+#include "vigia/localization/field_model.hpp"
 #include "vigia/mission/estimator_tick.hpp"
 
 namespace vigia::evaluation {
@@ -67,6 +69,7 @@ struct EstimatorSetup {
   Eigen::Matrix3d prior_covariance = Eigen::Matrix3d::Zero();  ///< of (x, y, θ) at the start
   bool prior =
       true;  ///< whether the localizer was told; if not, its errors count from the first fix
+  std::optional<FieldMap> field = std::nullopt;
 };
 
 /// Scores one localizer of a drive, simulated or recorded, by what an estimator's ticks hold:
@@ -90,6 +93,7 @@ class EstimatorScorer {
   void bound_by(const Observation& observation, const mission::ExposureTruth& truth);
 
   EstimatorSetup setup_;
+  std::optional<localization::FieldModel> field_;
   PosteriorBound bound_;
   LossScorer losses_;
   LocalizerScore score_;

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "vigia/core/field_map.hpp"
+#include "vigia/core/field_scan.hpp"
 #include "vigia/core/pose.hpp"
 #include "vigia/core/random.hpp"
-#include "vigia/localization/field_scan.hpp"
 
 namespace vigia::evaluation {
 
@@ -38,7 +38,7 @@ struct FalseLine {
 /// One image's measurements, and what they truly show.
 struct FieldFrame {
   Pose2 truth;
-  localization::FieldScan scan;
+  FieldScan scan;
   /// Bound on the covariance of (x, y, θ) from the points that lie on lines, each known to lie on
   /// its own: the Cramér–Rao bound of a frame without prior.
   Eigen::Matrix3d bound = Eigen::Matrix3d::Zero();

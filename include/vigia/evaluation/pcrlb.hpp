@@ -34,6 +34,9 @@ class PosteriorBound {
   bool update(const Pose2& truth, const localization::LookBias& bias, const Landmark& landmark,
               const Observation& observation);
 
+  /// Updates by what an image of a field truly says of (x, y, θ).
+  void update(const Eigen::Matrix3d& information);
+
   /// The bound on the covariance of (x, y, θ).
   Eigen::Matrix3d covariance() const { return P_.topLeftCorner<3, 3>(); }
 

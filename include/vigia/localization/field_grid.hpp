@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "vigia/core/field_map.hpp"
+#include "vigia/core/field_scan.hpp"
 #include "vigia/core/pose.hpp"
-#include "vigia/localization/field_scan.hpp"
 
 namespace vigia::localization {
 

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 
 #include "vigia/core/field_map.hpp"
+#include "vigia/core/field_scan.hpp"
 #include "vigia/core/pose.hpp"
-#include "vigia/localization/field_scan.hpp"
 #include "vigia/localization/straight_groups.hpp"
 
 namespace vigia::localization {

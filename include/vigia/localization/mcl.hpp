@@ -82,8 +82,16 @@ class Mcl {
   double log_weight_of_sightings(const FieldScan& scan, Particle& particle) const;
   /// Log weights of the noise's densities over the proposals'.
   std::vector<double> draw_motion_noise(const FieldScan& scan);
-  void inject(const FieldScan& scan);
-  void inject_about(const FieldFix& fix, int count, double log_prior, const FieldScan& scan);
+  /// Before the scan: what is known, and a robot that may be anywhere.
+  struct MixturePrior {
+    std::vector<PoseHypothesis> known;
+    double anywhere = 0.0;  ///< density of a pose, per m² rad
+    double density(const Pose2& pose) const;
+  };
+  std::vector<PoseHypothesis> predicted_hypotheses() const;
+  void inject(const FieldScan& scan, std::vector<PoseHypothesis> expected);
+  void inject_about(const FieldFix& fix, int count, const MixturePrior& prior,
+                    const FieldScan& scan);
   void fold_twins();
   void resample();
   void spread_copies();

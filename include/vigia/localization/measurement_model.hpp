@@ -40,7 +40,8 @@ const Shot& shot_of(const Match& match);
 /// What predicted images hang on – map, walls, rig, ground and noise – and the one measurement
 /// model of filter, smoother, bound, planner and search. Each kind of observation has a file with
 /// the same functions (disc_measurement.hpp, points_measurement.hpp); the members here visit the
-/// kinds exhaustively: a new alternative of Observation without its functions does not compile.
+/// kinds exhaustively: a new alternative of Observation without its functions does not compile. A
+/// scan of a field is no landmark's image; its model is FieldModel.
 class MeasurementModel {
  public:
   /// @p plan, when given, rules out landmarks behind walls.

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "vigia/localization/field_scan.hpp"
+#include "vigia/core/field_scan.hpp"
 
 namespace vigia::localization {
 

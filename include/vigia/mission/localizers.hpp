@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,7 +23,8 @@ struct LocalizerEntry : NameEntry {
   bool usual;  ///< cheap: runs wherever it fits, unless the mission names its localizers
   FirstPose first_pose;
   bool (*fits)(const MissionSetup& setup);  ///< whether robot and world have what it needs
-  std::unique_ptr<localization::Localizer> (*make)(const MissionSetup& setup);
+  /// @p seed: the mission's, of a localizer that draws.
+  std::unique_ptr<localization::Localizer> (*make)(const MissionSetup& setup, std::uint64_t seed);
 };
 
 /// Every localizer, in the order of a run's tables.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "vigia/core/belief.hpp"
+#include "vigia/core/field_map.hpp"
 #include "vigia/core/gaze.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/core/name_table.hpp"
@@ -58,6 +59,13 @@ struct EyeParts {
   std::string tracker = "disc";  ///< of discs; see tracking::make_ellipse_tracker
   /// By an attention; otherwise the eye observes all that every capture shows.
   bool directed = false;
+  const FieldMap* field = nullptr;  ///< of the world, where it has one
+  /// What the robot's own cameras see of it: a cylinder about the base's centre.
+  struct Hull {
+    double radius_m = 0.0;
+    double height_m = 0.0;  ///< 0: nothing
+  };
+  Hull hull = {};
 };
 
 struct EyeEntry : NameEntry {

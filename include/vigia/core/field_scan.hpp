@@ -5,9 +5,10 @@
 #include <Eigen/Core>
 
 #include "vigia/core/field_map.hpp"
+#include "vigia/core/pose.hpp"
 #include "vigia/core/stamp.hpp"
 
-namespace vigia::localization {
+namespace vigia {
 
 /// A point of a painted line's centre line on the floor, in the robot's frame, metres.
 struct FieldPoint {
@@ -35,4 +36,8 @@ struct FieldScan {
 /// A point from bearing and range with independent errors.
 FieldPoint polar_point(double bearing, double range_m, double bearing_sigma, double range_sigma_m);
 
-}  // namespace vigia::localization
+/// What a robot at frame a would have seen at @p stamp of the scan of one at frame b: line points
+/// and the places of goals and posts move, their errors turn with them.
+FieldScan carried(const FieldScan& scan_b, const Pose2& aMb, Stamp stamp);
+
+}  // namespace vigia
