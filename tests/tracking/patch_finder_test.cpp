@@ -93,7 +93,7 @@ TEST(PatchFinder, MeasuresEveryPatchToTheBoundThatItsCovarianceStates) {
     ASSERT_GT(tally.measured, 200);
     EXPECT_EQ(tally.missed, 0);
     EXPECT_EQ(tally.false_ones, 0);
-    if (polarity) EXPECT_EQ(tally.reversed, 0);
+    EXPECT_EQ(polarity ? tally.reversed : 0, 0);
     // Four standard errors of a mean square of n normal numbers.
     const double slack = 4.0 * std::sqrt(2.0 / tally.measured);
     for (int i = 0; i < 3; ++i)
