@@ -20,7 +20,8 @@ using FlowVector = Eigen::Matrix<double, kFlowUnknowns, 1>;
 constexpr double kFlowBlur_px = 1.0;
 constexpr int kFlowMargin_px = 4;
 constexpr int kFlowSteps = 12;
-constexpr int kCoarse = 4;  // pixels of the search at low resolution
+constexpr int kCoarse = 4;          // pixels: σ and step of the search
+constexpr int kSearchPoints = 300;  // that it goes by
 
 /// Grey and slope between pixels, linear.
 struct GreySample {
@@ -64,15 +65,15 @@ class PlaneFlow::State {
     cv::GaussianBlur(grey, smooth, {}, kFlowBlur_px);
     PlaneFlowResult result;
     if (points_.empty()) {
-      make_key(smooth);
+      make_key(grey, smooth);
       result.new_key = true;
       result.status = points_.empty() ? FlowStatus::failed : FlowStatus::key;
       return result;
     }
-    Match match = align(smooth, predicted());
-    if (!agrees(match)) match = align(smooth, search(smooth));
+    Match match = align(smooth, predicted(), &KeyPoint::grey);
+    if (!agrees(match)) match = align(smooth, found_again(grey), &KeyPoint::grey);
     if (!agrees(match)) {
-      make_key(smooth);
+      make_key(grey, smooth);
       result.status = FlowStatus::failed;
       result.new_key = true;
       return result;
@@ -84,7 +85,7 @@ class PlaneFlow::State {
               false,
               match.agreement};
     if (match.overlap < params_.min_overlap) {
-      make_key(smooth);
+      make_key(grey, smooth);
       result.new_key = true;
     }
     return result;
@@ -95,7 +96,9 @@ class PlaneFlow::State {
   struct KeyPoint {
     Eigen::Vector2d m;  ///< levelled direction, (x, y) at unit distance
     double grey;
+    double coarse;  ///< grey of the blurred picture that is searched
   };
+  using Level = double KeyPoint::*;
 
   /// Turn and shift with the light's change.
   struct FlowState {
@@ -134,17 +137,24 @@ class PlaneFlow::State {
     return state;
   }
 
-  void make_key(const cv::Mat& smooth) {
+  static cv::Mat blurred(const cv::Mat& grey) {
+    cv::Mat coarse;
+    cv::GaussianBlur(grey, coarse, {}, kCoarse);
+    return coarse;
+  }
+
+  void make_key(const cv::Mat& grey, const cv::Mat& smooth) {
     points_.clear();
+    const cv::Mat coarse = blurred(grey);
     last_ = {};
     const int block = params_.block_px;
     for (int v0 = kFlowMargin_px; v0 + block <= smooth.rows - kFlowMargin_px; v0 += block)
       for (int u0 = kFlowMargin_px; u0 + block <= smooth.cols - kFlowMargin_px; u0 += block)
-        add_steepest(smooth, u0, v0);
+        add_steepest(smooth, coarse, u0, v0);
     if (static_cast<int>(points_.size()) < params_.min_points) points_.clear();
   }
 
-  void add_steepest(const cv::Mat& smooth, int u0, int v0) {
+  void add_steepest(const cv::Mat& smooth, const cv::Mat& coarse, int u0, int v0) {
     int best = 0;
     int best_u = 0;
     int best_v = 0;
@@ -165,17 +175,18 @@ class PlaneFlow::State {
     if (!seen) return;
     const Eigen::Vector3d r = level_ * *seen;
     if (r.z() < 0.1) return;
-    points_.push_back(
-        {r.head<2>() / r.z(), static_cast<double>(smooth.ptr<unsigned char>(best_v)[best_u])});
+    points_.push_back({r.head<2>() / r.z(),
+                       static_cast<double>(smooth.ptr<unsigned char>(best_v)[best_u]),
+                       static_cast<double>(coarse.ptr<unsigned char>(best_v)[best_u])});
   }
 
   /// Gauss–Newton from @p start.
-  Match align(const cv::Mat& now, const FlowState& start) const {
+  Match align(const cv::Mat& now, const FlowState& start, Level level) const {
     Match match;
     match.state = start;
     double scale = 12.0;
     for (int i = 0; i < kFlowSteps; ++i) {
-      const Sums sums = sum_up(now, match.state, scale);
+      const Sums sums = sum_up(now, match.state, scale, level);
       match.overlap = static_cast<double>(sums.seen) / static_cast<double>(points_.size());
       if (sums.seen < params_.min_points / 2) return match;
       match.agreement = static_cast<double>(sums.fitting) / sums.seen;
@@ -205,7 +216,7 @@ class PlaneFlow::State {
     int fitting = 0;
   };
 
-  Sums sum_up(const cv::Mat& now, const FlowState& state, double scale) const {
+  Sums sum_up(const cv::Mat& now, const FlowState& state, double scale, Level level) const {
     Sums sums;
     const double c = std::cos(state.turn);
     const double s = std::sin(state.turn);
@@ -222,7 +233,7 @@ class PlaneFlow::State {
       if (!duv_dp) continue;
       ++sums.seen;
       const GreySample grey = sample(now, uv->x(), uv->y());
-      const double residual = state.gain * point.grey + state.offset - grey.grey;
+      const double residual = state.gain * point.*level + state.offset - grey.grey;
       residuals.push_back(std::abs(residual));
       if (std::abs(residual) < 3.0 * scale) ++sums.fitting;
       Eigen::Matrix<double, 2, 3> dm;
@@ -230,7 +241,7 @@ class PlaneFlow::State {
       const Eigen::Matrix<double, 2, 3> duv = *duv_dp * unlevel.leftCols<2>() * dm;
       FlowVector row;
       row.head<3>() = Eigen::RowVector2d(grey.du, grey.dv) * duv;
-      row[3] = -point.grey;
+      row[3] = -(point.*level);
       row[4] = -1.0;
       // Geman and McClure's weight.
       const double z = residual / (2.0 * scale);
@@ -242,6 +253,13 @@ class PlaneFlow::State {
     }
     if (!residuals.empty()) sums.scale = 1.4826 * median_of(residuals);
     return sums;
+  }
+
+  /// Where a fine match may begin when the prediction fails: searched and aligned in a blurred
+  /// picture, whose basin is as wide as the search's steps.
+  FlowState found_again(const cv::Mat& grey) const {
+    const cv::Mat coarse = blurred(grey);
+    return align(coarse, search(coarse), &KeyPoint::coarse).state;
   }
 
   /// The shift, about the last frame's, under which the pictures differ least, in steps of kCoarse
@@ -273,17 +291,18 @@ class PlaneFlow::State {
     const double s = std::sin(state.turn);
     double sum = 0.0;
     int seen = 0;
-    for (std::size_t i = 0; i < points_.size(); i += 4) {
+    const std::size_t every = std::max<std::size_t>(1, points_.size() / kSearchPoints);
+    for (std::size_t i = 0; i < points_.size(); i += every) {
       const Eigen::Vector2d d = points_[i].m - state.shift;
       const Eigen::Vector2d m(c * d.x() + s * d.y(), c * d.y() - s * d.x());
       const auto uv = project(model_, Eigen::Vector3d(level_.transpose() * m.homogeneous()));
       if (!uv || !in_image(model_, *uv, kFlowMargin_px)) continue;
       ++seen;
       const double off =
-          state.gain * points_[i].grey + state.offset - sample(now, uv->x(), uv->y()).grey;
+          state.gain * points_[i].coarse + state.offset - sample(now, uv->x(), uv->y()).grey;
       sum += std::min(std::abs(off), 40.0);
     }
-    return seen < params_.min_points / 8 ? 1e30 : sum / seen;
+    return seen < params_.min_points / 4 ? 1e30 : sum / seen;
   }
 
   double focal() const {

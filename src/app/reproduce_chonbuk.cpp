@@ -72,6 +72,12 @@ CeilingSetting ideal(std::uint64_t seed) {
   return setting;
 }
 
+CeilingSetting plain(std::uint64_t seed) {
+  CeilingSetting setting = ideal(seed);
+  setting.contrast = 0.0;
+  return setting;
+}
+
 /// The paper's line (0, 0) to (5, 2.5) m, turned and moved anywhere; the first seed's as it stands.
 std::vector<Pose2> line_of(std::uint64_t seed, double step_m) {
   RandomStream random(seed, "line");
@@ -136,21 +142,26 @@ void draw_errors(const ChonbukRun& run, const std::string& file, const std::stri
 }
 
 /// A hundred positions on each line, frame by frame.
+void study_ideal_camera(const ChonbukRun& run, const std::string& name,
+                        CeilingSetting (*setting_of)(std::uint64_t)) {
+  const auto drives = drives_of(setting_of, run.lines(kLines), kLine_m / (kPositions - 1));
+  const auto frames = evaluation::read_ceiling_drives(drives, {}, run.options.threads);
+  std::vector<CeilingEstimate> nearest;
+  std::vector<CeilingEstimate> joint;
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    const CeilingSetting& setting = drives[i].setting;
+    append(nearest, follow_published(setting, setting.known_camera(), frames[i]));
+    append(joint, fix_jointly(setting, {}, frames[i]));
+  }
+  add_position_rows(run, name, summarise_errors(nearest), summarise_errors(joint), {}, {});
+}
+
 void study_positions(const ChonbukRun& run) {
   const int count = run.lines(kLines);
   const double step = kLine_m / (kPositions - 1);
   const double period_s = step / kSpeed_mps;
-  const auto clean = drives_of(&ideal, count, step);
-  const auto clean_frames = evaluation::read_ceiling_drives(clean, {}, run.options.threads);
-  std::vector<CeilingEstimate> nearest;
-  std::vector<CeilingEstimate> joint;
-  for (std::size_t i = 0; i < clean.size(); ++i) {
-    const CeilingSetting& setting = clean[i].setting;
-    append(nearest, follow_published(setting, setting.known_camera(), clean_frames[i]));
-    append(joint, fix_jointly(setting, {}, clean_frames[i]));
-  }
-  add_position_rows(run, "ideal camera, one frame", summarise_errors(nearest),
-                    summarise_errors(joint), {}, {});
+  study_ideal_camera(run, "ideal camera, plain ceiling, one frame", &plain);
+  study_ideal_camera(run, "ideal camera, one frame", &ideal);
 
   const auto drives = drives_of(&disturbed, count, step);
   const auto frames = evaluation::read_ceiling_drives(drives, {}, run.options.threads);
@@ -162,7 +173,7 @@ void study_positions(const ChonbukRun& run) {
   std::vector<CeilingEstimate> followed;
   for (std::size_t i = 0; i < drives.size(); ++i) {
     const CeilingSetting& setting = drives[i].setting;
-    const auto errors = calibrate_ceiling(setting, frames[i], period_s);
+    const auto errors = calibrate_ceiling(setting, frames[i], period_s).errors;
     append(tilted, follow_published(setting, setting.known_camera(), frames[i]));
     append(calibrated,
            follow_published(setting, corrected(setting.known_camera(), errors), frames[i]));

@@ -191,9 +191,8 @@ std::vector<CeilingEstimate> follow_jointly(const CeilingSetting& setting,
   return estimates;
 }
 
-localization::CeilingCameraErrors calibrate_ceiling(const CeilingSetting& setting,
-                                                    const std::vector<CeilingFrame>& frames,
-                                                    double period_s) {
+CeilingCalibration calibrate_ceiling(const CeilingSetting& setting,
+                                     const std::vector<CeilingFrame>& frames, double period_s) {
   CeilingFilterParams params;
   params.tilt_sigma = from_deg(2.0);
   params.height_sigma = 0.04;
@@ -203,7 +202,7 @@ localization::CeilingCameraErrors calibrate_ceiling(const CeilingSetting& settin
     if (i > 0) filter.predict_unknown(Stamp::from_seconds(static_cast<double>(i) * period_s));
     filter.update(frames[i].scan.patches);
   }
-  return filter.camera_errors();
+  return {filter.camera_errors(), filter.camera_errors_covariance()};
 }
 
 std::vector<CeilingEstimate> follow_flow(const CeilingSetting& setting,

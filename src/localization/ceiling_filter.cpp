@@ -18,6 +18,10 @@ constexpr double kPatchAgrees_m = 0.06;  // two patches of one grid, whatever th
 constexpr double kDirected = 5.0;        // log-odds
 constexpr int kFarthestShift = 6;        // cells that are weighed each way, at most
 constexpr double kNegligible = 1e-6;
+constexpr double kForgotten_px = 40.0;  // beyond the border
+constexpr double kPlain_px = 8.0;       // from the border: a patch there should be found
+constexpr int kIterations = 5;
+constexpr double kAtRest = 1e-7;
 
 Eigen::Matrix2d world_to_robot(double theta) {
   return Eigen::Rotation2Dd(-theta).toRotationMatrix();
@@ -48,6 +52,8 @@ void CeilingFilter::reset(Stamp stamp, const Prior& prior) {
   P_(5, 5) = params_.height_sigma * params_.height_sigma;
   patches_.clear();
   shifts_ = {{CeilingCell{}, 1.0}};
+  judged_.clear();
+  cells_unsure_ = false;
   gated_ = 0;
   unknown_s_ = 0.0;
   refresh_belief();
@@ -118,11 +124,16 @@ bool CeilingFilter::wide() const {
   return belief_.position_sigma() > 0.1 * grid_.pitch_m || P_(2, 2) > from_deg(8.0) * from_deg(8.0);
 }
 
+/// Whether the robot may be half a pitch from the mean.
+bool CeilingFilter::open() const {
+  return 3.0 * belief_.position_sigma() > 0.5 * grid_.pitch_m;
+}
+
 std::vector<CeilingFilter::Seen> CeilingFilter::see(const std::vector<PatchImage>& patches) const {
   std::vector<Seen> seen;
   for (const PatchImage& patch : patches)
     if (const auto on = on_ceiling(camera_, patch, camera_errors()))
-      seen.push_back({*on, patch.forward_log_odds >= kDirected, {}});
+      seen.push_back({patch, *on, patch.forward_log_odds >= kDirected, {}});
   return seen;
 }
 
@@ -174,21 +185,38 @@ Pose2 CeilingFilter::point_of_linearisation(const std::vector<Seen>& seen) const
   return best;
 }
 
-/// Keeps the placement errors of the cells in view, forgets the others, admits the new ones.
-void CeilingFilter::hold(const std::vector<Seen>& seen) {
+/// Whether the camera shows all of a cell's patch, @p margin_px from the border or more.
+bool CeilingFilter::in_sight(const CeilingCell& cell, const Pose2& at, double margin_px) const {
+  const CeilingCamera camera = corrected(camera_, camera_errors());
+  const Eigen::Isometry3d cMw = (to_isometry(at) * camera.rMc).inverse();
+  const Eigen::Vector2d p = cell_centre(grid_, cell);
+  for (const double end : {-0.5, 0.5}) {
+    const Eigen::Vector3d p_w(p.x() + end * grid_.length_m, p.y(), camera.ceiling_m);
+    const auto uv = project(camera.model, cMw * p_w);
+    if (!uv || !in_image(camera.model, *uv, margin_px)) return false;
+  }
+  return true;
+}
+
+/// Keeps the placement errors of the cells in view, forgets the others, admits the new ones. Where
+/// several shifts of the prediction are possible, a patch's cell may be another than it was.
+void CeilingFilter::hold(const std::vector<Seen>& seen, const Pose2& at) {
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < kCommon; ++i) kept.push_back(i);
   std::map<CeilingCell, Eigen::Index> places;
-  std::vector<CeilingCell> fresh;
-  for (const Seen& one : seen) {
-    const auto known = patches_.find(one.cell);
-    if (known == patches_.end()) {
-      fresh.push_back(one.cell);
-      continue;
+  cells_unsure_ = open() && !patches_.empty();
+  if (open()) {
+    judged_.clear();
+  } else {
+    for (const auto& [cell, place] : patches_) {
+      if (!in_sight(cell, at, -kForgotten_px)) continue;
+      places[cell] = static_cast<Eigen::Index>(kept.size());
+      for (Eigen::Index i = 0; i < 3; ++i) kept.push_back(place + i);
     }
-    places[one.cell] = static_cast<Eigen::Index>(kept.size());
-    for (Eigen::Index i = 0; i < 3; ++i) kept.push_back(known->second + i);
   }
+  std::vector<CeilingCell> fresh;
+  for (const Seen& one : seen)
+    if (places.count(one.cell) == 0) fresh.push_back(one.cell);
   const auto old = static_cast<Eigen::Index>(kept.size());
   const Eigen::Index size = old + 3 * static_cast<Eigen::Index>(fresh.size());
   Eigen::VectorXd x = Eigen::VectorXd::Zero(size);
@@ -198,44 +226,56 @@ void CeilingFilter::hold(const std::vector<Seen>& seen) {
     for (Eigen::Index j = 0; j < old; ++j)
       P(i, j) = P_(kept[static_cast<std::size_t>(i)], kept[static_cast<std::size_t>(j)]);
   }
-  Eigen::Index at = old;
+  Eigen::Index place = old;
   for (const CeilingCell& cell : fresh) {
-    places[cell] = at;
-    P(at, at) = P(at + 1, at + 1) = grid_.placement_m * grid_.placement_m;
-    P(at + 2, at + 2) = grid_.placement_turn * grid_.placement_turn;
-    at += 3;
+    places[cell] = place;
+    P(place, place) = P(place + 1, place + 1) = grid_.placement_m * grid_.placement_m;
+    P(place + 2, place + 2) = grid_.placement_turn * grid_.placement_turn;
+    place += 3;
   }
   x_ = std::move(x);
   P_ = std::move(P);
   patches_ = std::move(places);
 }
 
+/// The mean with another pose.
+Eigen::VectorXd CeilingFilter::state_at(const Pose2& pose) const {
+  Eigen::VectorXd at = x_;
+  at.head<3>() = pose.vector();
+  return at;
+}
+
 CeilingFilter::Linearised CeilingFilter::linearise(const std::vector<Seen>& seen,
-                                                   const Pose2& at) const {
+                                                   const Eigen::VectorXd& at) const {
   const auto rows = 3 * static_cast<Eigen::Index>(seen.size());
-  Linearised all{Eigen::VectorXd(rows),
+  Linearised all{Eigen::VectorXd::Zero(rows),
                  Eigen::MatrixXd::Zero(rows, x_.size()),
-                 Eigen::MatrixXd::Zero(rows, rows),
+                 Eigen::MatrixXd::Identity(rows, rows),
                  {}};
-  const Eigen::Matrix2d R = world_to_robot(at.theta);
+  const auto errors = CeilingCameraErrors::from_vector(at.segment<3>(3));
+  const double theta = at[2];
+  const Eigen::Matrix2d R = world_to_robot(theta);
   Eigen::Index row = 0;
   for (const Seen& one : seen) {
+    const PatchOnCeiling patch = on_ceiling(camera_, one.image, errors).value_or(one.patch);
     const Eigen::Index place = patches_.at(one.cell);
-    const Eigen::Vector2d out = cell_centre(grid_, one.cell) + x_.segment<2>(place) - at.position();
+    const Eigen::Vector2d out = cell_centre(grid_, one.cell) + at.segment<2>(place) - at.head<2>();
     const Eigen::Vector2d expected = R * out;
-    all.y.segment<2>(row) = one.patch.q - expected;
-    all.y[row + 2] = direction_difference(one.patch.psi, x_[place + 2] - at.theta, one.directed);
+    all.y.segment<2>(row) = patch.q - expected;
+    all.y[row + 2] = direction_difference(patch.psi, at[place + 2] - theta, one.directed);
     all.H.block<2, 2>(row, 0) = -R;
     all.H.block<2, 1>(row, 2) = Eigen::Vector2d(expected.y(), -expected.x());
     all.H(row + 2, 2) = -1.0;
-    all.H.block<3, 3>(row, 3) = -one.patch.derrors;
+    all.H.block<3, 3>(row, 3) = -patch.derrors;
     all.H.block<2, 2>(row, place) = R;
     all.H(row + 2, place + 2) = 1.0;
-    all.R.block<3, 3>(row, row) = one.patch.covariance;
+    all.R.block<3, 3>(row, row) = patch.covariance;
     row += 3;
   }
-  // Linearised at another pose than the mean.
-  all.y += all.H.leftCols<3>() * difference(at, pose());
+  // Linearised at another state than the mean.
+  Eigen::VectorXd off = at - x_;
+  off[2] = wrap_angle(off[2]);
+  all.y += all.H * off;
   all.S = all.H * P_ * all.H.transpose() + all.R;
   return all;
 }
@@ -274,22 +314,50 @@ void CeilingFilter::weigh_shifts(const Linearised& all, const std::vector<Seen>&
       least = std::min(least, square);
     }
   }
-  double sum = 0.0;
   for (const auto& [from, weight] : shifts_) {
     for (const auto& [by, square] : moved) {
       const CeilingCell to{from.i + by.i, from.j + by.j};
-      double chance = weight * std::exp(-0.5 * (square - least));
-      if (chance < 1e-12) continue;
-      for (const Seen& one : seen)
-        if (!has_patch(grid_, {one.cell.i + to.i, one.cell.j + to.j})) chance *= params_.spurious;
-      weighed[to] += chance;
-      sum += chance;
+      weighed[to] += weight * std::exp(-0.5 * (square - least));
     }
   }
-  if (sum <= 0.0) return;
-  shifts_.clear();
-  for (const auto& [to, weight] : weighed)
-    if (weight > kNegligible * sum) shifts_[to] = weight / sum;
+  shifts_ = std::move(weighed);
+  judge_presence(seen, at);
+  normalise_shifts();
+}
+
+/// Patches where a shift has none, and none where it has one. Each cell is judged once while it is
+/// in view: a patch that fell off is missing in every frame for one and the same reason.
+void CeilingFilter::judge_presence(const std::vector<Seen>& seen, const Pose2& at) {
+  if (!grid_.extent) return;
+  std::set<CeilingCell> present;
+  for (const Seen& one : seen) present.insert(one.cell);
+  std::set<CeilingCell> judged;
+  const CeilingCell middle = nearest_cell(grid_, at.position());
+  const int reach = static_cast<int>(std::ceil(2.0 * camera_.rise_m() / grid_.pitch_m));
+  for (std::int64_t i = middle.i - reach; i <= middle.i + reach; ++i) {
+    for (std::int64_t j = middle.j - reach; j <= middle.j + reach; ++j) {
+      const CeilingCell cell{i, j};
+      const bool there = present.count(cell) > 0;
+      if (!there && !in_sight(cell, at, kPlain_px)) continue;
+      judged.insert(cell);
+      if (judged_.count(cell) > 0) continue;
+      for (auto& [shift, weight] : shifts_) {
+        const bool has = has_patch(grid_, {i + shift.i, j + shift.j});
+        if (there && !has) weight *= params_.spurious;
+        if (!there && has) weight *= params_.missing;
+      }
+    }
+  }
+  judged_ = std::move(judged);
+}
+
+void CeilingFilter::normalise_shifts() {
+  double sum = 0.0;
+  for (const auto& [shift, weight] : shifts_) sum += weight;
+  Shifts kept;
+  for (const auto& [shift, weight] : shifts_)
+    if (weight > kNegligible * sum) kept[shift] = weight / sum;
+  shifts_ = std::move(kept);
 }
 
 /// Patches contradict the prediction again and again: it may be anywhere in its cell and the next.
@@ -310,35 +378,64 @@ void CeilingFilter::shift_by(const CeilingCell& shift) {
   Shifts shifts;
   for (const auto& [by, weight] : shifts_) shifts[{by.i - shift.i, by.j - shift.j}] = weight;
   shifts_ = std::move(shifts);
+  std::set<CeilingCell> judged;
+  for (const CeilingCell& cell : judged_) judged.insert({cell.i + shift.i, cell.j + shift.j});
+  judged_ = std::move(judged);
+}
+
+/// Kalman's; the camera's errors are considered and not updated (Schmidt 1966) where patches may be
+/// those of the frames before, under other cells: to learn from them anew would count them twice.
+Eigen::MatrixXd CeilingFilter::gain(const Linearised& all) const {
+  Eigen::MatrixXd K = P_ * all.H.transpose() *
+                      all.S.ldlt().solve(Eigen::MatrixXd::Identity(all.S.rows(), all.S.cols()));
+  if (cells_unsure_) K.middleRows<3>(3).setZero();
+  return K;
+}
+
+Eigen::VectorXd CeilingFilter::fused_state(const Linearised& all) const {
+  Eigen::VectorXd x = x_ + gain(all) * all.y;
+  x[2] = wrap_angle(x[2]);
+  return x;
+}
+
+/// Where the update ends: linearised there again until it comes to rest (Bell and Cathey 1993).
+Eigen::VectorXd CeilingFilter::converged(const std::vector<Seen>& seen, const Pose2& start) const {
+  Eigen::VectorXd at = state_at(start);
+  for (int i = 0; i < kIterations; ++i) {
+    const Eigen::VectorXd next = fused_state(linearise(seen, at));
+    const double moved = (next - at).head<kCommon>().norm();
+    at = next;
+    if (moved < kAtRest) break;
+  }
+  return at;
+}
+
+void CeilingFilter::fuse(const Linearised& all) {
+  const Eigen::MatrixXd K = gain(all);
+  x_ += K * all.y;
+  x_[2] = wrap_angle(x_[2]);
+  // Joseph's form: the placement errors of a perfect grid have no variance at all.
+  const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(P_.rows(), P_.cols()) - K * all.H;
+  P_ = (left * P_ * left.transpose() + K * all.R * K.transpose()).eval();
 }
 
 CeilingUpdate CeilingFilter::update(const std::vector<PatchImage>& patches) {
   std::vector<Seen> seen = see(patches);
   if (seen.empty()) return CeilingUpdate::none_seen;
-  const Pose2 at = point_of_linearisation(seen);
-  seen = associated(seen, at);
-  hold(seen);
-  Linearised all = linearise(seen, at);
-  const std::vector<Seen> passed = gated(seen, all);
-  if (passed.size() < seen.size()) {
-    hold(passed);
-    all = linearise(passed, at);
-  }
+  const Pose2 start = point_of_linearisation(seen);
+  seen = associated(seen, start);
+  hold(seen, start);
+  const std::vector<Seen> passed = gated(seen, linearise(seen, state_at(start)));
   if (passed.empty()) {
     if (++gated_ >= params_.max_gated) doubt();
     refresh_belief();
     return CeilingUpdate::gated;
   }
   gated_ = 0;
-  weigh_shifts(all, passed, at);
-  const Eigen::MatrixXd K =
-      P_ * all.H.transpose() *
-      all.S.ldlt().solve(Eigen::MatrixXd::Identity(all.S.rows(), all.S.cols()));
-  x_ += K * all.y;
-  x_[2] = wrap_angle(x_[2]);
-  // Joseph's form: the placement errors of a perfect grid have no variance at all.
-  const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(P_.rows(), P_.cols()) - K * all.H;
-  P_ = (left * P_ * left.transpose() + K * all.R * K.transpose()).eval();
+  const Eigen::VectorXd at = converged(passed, start);
+  const Linearised all = linearise(passed, at);
+  weigh_shifts(all, seen, Pose2::from_vector(at.head<3>()));
+  fuse(all);
   unknown_s_ = 0.0;
   const auto best =
       std::max_element(shifts_.begin(), shifts_.end(),
@@ -364,8 +461,7 @@ void CeilingFilter::refresh_belief() {
   belief_.covariance = P_.topLeftCorner<3, 3>();
   belief_.hypotheses.clear();
   const double best = shifts_[CeilingCell{}];
-  const bool open = 3.0 * belief_.position_sigma() > 0.5 * grid_.pitch_m;
-  belief_.status = best < params_.sure || open ? BeliefStatus::ambiguous : BeliefStatus::tracking;
+  belief_.status = best < params_.sure || open() ? BeliefStatus::ambiguous : BeliefStatus::tracking;
   belief_.lost_probability = 1.0 - best;
   if (belief_.status == BeliefStatus::tracking) return;
   for (const auto& [shift, weight] : shifts_) {

@@ -1,5 +1,6 @@
 #include "vigia/evaluation/ceiling_study.hpp"
 
+#include <Eigen/Dense>
 #include <gtest/gtest.h>
 
 #include "vigia/core/angle.hpp"
@@ -9,7 +10,7 @@ namespace vigia::evaluation {
 namespace {
 
 constexpr double kStep_m = 0.12;
-constexpr double kStep_s = 1.2;
+constexpr double kStep_s = 0.6;
 
 CeilingSetting tilted_setting() {
   CeilingSetting setting;
@@ -26,7 +27,8 @@ std::vector<Pose2> line() {
 }
 
 TEST(CeilingStudy, AnIdealCameraIsRightToMillimetresByOnePatchAndToTheBoundByAll) {
-  const CeilingSetting setting;
+  CeilingSetting setting;
+  setting.contrast = 0.0;
   const auto frames = read_ceiling_drive(setting, line());
   const auto nearest = summarise_errors(follow_published(setting, setting.known_camera(), frames));
   const auto joint = summarise_errors(fix_jointly(setting, {}, frames));
@@ -35,6 +37,43 @@ TEST(CeilingStudy, AnIdealCameraIsRightToMillimetresByOnePatchAndToTheBoundByAll
   EXPECT_LT(joint.mean_m, 0.001);
   // Four standard errors of some forty independent frames.
   EXPECT_NEAR(joint.rms_m / joint.bound_m, 1.0, 4.0 / std::sqrt(4.0 * joint.frames));
+  EXPECT_NEAR(joint.nees, 1.0, 4.0 * std::sqrt(2.0 / (3.0 * joint.frames)));
+}
+
+TEST(CeilingStudy, TextureUnderThePatchesCostsLessThanATenthOfAMillimetre) {
+  const CeilingSetting setting;
+  const auto joint =
+      summarise_errors(fix_jointly(setting, {}, read_ceiling_drive(setting, line())));
+  EXPECT_LT(joint.mean_m, 1e-4);
+}
+
+TEST(CeilingStudy, TheFilterIsAsFarOffAsItsBoundAndItsCovarianceSayWithConstantErrors) {
+  constexpr int kDrives = 12;
+  double square = 0.0;
+  double bound = 0.0;
+  double nees = 0.0;
+  for (std::uint64_t seed = 1; seed <= kDrives; ++seed) {
+    RandomStream random(seed, "constants");
+    CeilingSetting setting = tilted_setting();
+    setting.seed = setting.ceiling.seed = seed;
+    const Eigen::Vector2d tilt(random.normal(), random.normal());
+    setting.tilt = from_deg(0.7) * tilt.norm();
+    setting.tilt_axis = std::atan2(tilt.y(), tilt.x());
+    setting.height_error = 0.02 * random.normal();
+    localization::CeilingFilterParams params;
+    params.tilt_sigma = from_deg(0.7);
+    params.height_sigma = 0.02;
+    const auto followed = summarise_errors(follow_jointly(
+        setting, params, read_ceiling_drive(setting, line()), CeilingMotion::unknown, kStep_s));
+    square += followed.rms_m * followed.rms_m;
+    bound += followed.bound_m * followed.bound_m;
+    nees += followed.nees / kDrives;
+  }
+  // What is constant makes a drive's errors one: some six independent numbers of each. Four
+  // standard errors.
+  const double slack = 4.0 * std::sqrt(2.0 / (6.0 * kDrives));
+  EXPECT_NEAR(square / bound, 1.0, slack);
+  EXPECT_NEAR(nees, 1.0, slack);
 }
 
 TEST(CeilingStudy, TiltHeightAndPlacementExplainThePublishedErrorAndAreCalibrated) {
@@ -43,12 +82,15 @@ TEST(CeilingStudy, TiltHeightAndPlacementExplainThePublishedErrorAndAreCalibrate
   const auto published =
       summarise_errors(follow_published(setting, setting.known_camera(), frames));
   EXPECT_GT(published.mean_m, 0.02);
-  const auto errors = calibrate_ceiling(setting, frames, kStep_s);
-  EXPECT_NEAR(to_deg(errors.tilt_x), to_deg(setting.true_errors().tilt_x), 0.15);
-  EXPECT_NEAR(to_deg(errors.tilt_y), to_deg(setting.true_errors().tilt_y), 0.15);
-  EXPECT_NEAR(errors.log_height, setting.true_errors().log_height, 0.004);
+  const CeilingCalibration found = calibrate_ceiling(setting, frames, kStep_s);
+  const Eigen::Vector3d off = found.errors.vector() - setting.true_errors().vector();
+  // The 99.9 % quantile of χ² with three degrees of freedom.
+  EXPECT_LT(off.dot(found.covariance.ldlt().solve(off)), 16.27);
+  EXPECT_LT(to_deg(std::sqrt(found.covariance(0, 0))), 0.2);
+  EXPECT_LT(to_deg(std::sqrt(found.covariance(1, 1))), 0.2);
+  EXPECT_LT(std::sqrt(found.covariance(2, 2)), 0.003);
   const auto calibrated = summarise_errors(
-      follow_published(setting, corrected(setting.known_camera(), errors), frames));
+      follow_published(setting, corrected(setting.known_camera(), found.errors), frames));
   EXPECT_LT(calibrated.mean_m, 0.5 * published.mean_m);
 }
 

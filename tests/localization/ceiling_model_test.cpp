@@ -37,11 +37,12 @@ PatchImage image_of(const CeilingCamera& known, const CeilingCameraErrors& error
 }
 
 std::vector<PatchImage> images_about(const CeilingCamera& camera, const CeilingCameraErrors& errors,
-                                     const Pose2& robot) {
+                                     const Pose2& robot, const CeilingGrid& grid = {}) {
   std::vector<PatchImage> images;
   const CeilingCell middle = nearest_cell({}, robot.position());
   for (std::int64_t i = middle.i - 1; i <= middle.i + 1; ++i)
     for (std::int64_t j = middle.j - 1; j <= middle.j + 1; ++j) {
+      if (!has_patch(grid, {i, j})) continue;
       const Eigen::Vector2d p = cell_centre({}, {i, j});
       const PatchImage image = image_of(camera, errors, robot, {p.x(), p.y(), 0.0});
       if (in_image(camera.model, image.uv)) images.push_back(image);
@@ -153,19 +154,67 @@ TEST(CeilingFilter, IsAmbiguousWithTheTruthAmongItsHypothesesAfterDrivingUnseenF
   }));
 }
 
-TEST(CeilingFilter, TheGridsEdgeSettlesWhichCellItIs) {
+/// Weight of the hypotheses that lie in another column than @p truth.
+double weight_in_other_columns(const Belief& belief, const Pose2& truth) {
+  double weight = 0.0;
+  for (const PoseHypothesis& one : belief.hypotheses)
+    if (std::abs(one.pose.x - truth.x) > 0.5) weight += one.weight;
+  return weight;
+}
+
+TEST(CeilingFilter, PatchesBeyondTheGridsEdgeSettleWhichCellItIs) {
+  // The last column is x = 1. Whoever were a cell to the right would see patches at x = 2.
+  CeilingGrid grid;
+  grid.extent = CeilingGrid::Extent{{-20.0, -20.0}, {1.0, 20.0}};
+  for (const bool edge : {false, true}) {
+    CeilingFilter filter(up_camera(), edge ? grid : CeilingGrid{}, {});
+    filter.reset({}, near({0.0, 0.0, 0.0}, 0.01, 0.01));
+    filter.update(images_about(up_camera(), {}, {0.0, 0.0, 0.0}, grid));
+    filter.predict_unknown(Stamp::from_seconds(2.5));
+    const Pose2 robot{0.0, 0.0, 0.0};
+    ASSERT_EQ(filter.update(images_about(up_camera(), {}, robot, grid)), CeilingUpdate::fused);
+    double right = 0.0;
+    for (const PoseHypothesis& one : filter.belief().hypotheses)
+      if (one.pose.x > 0.5) right += one.weight;
+    if (edge)
+      EXPECT_LT(right, 1e-3);
+    else
+      EXPECT_GT(right, 0.01);
+  }
+}
+
+TEST(CeilingFilter, ColumnsThatAreMissingAtTheGridsEdgeSettleWhichCellItIs) {
   CeilingGrid grid;
   grid.extent = CeilingGrid::Extent{{-20.0, -20.0}, {1.0, 20.0}};
   CeilingFilter filter(up_camera(), grid, {});
+  const Pose2 start{0.0, 0.0, from_deg(90.0)};
+  filter.reset({}, near(start, 0.01, 0.01));
+  filter.update(images_about(up_camera(), {}, start, grid));
+  filter.predict_unknown(Stamp::from_seconds(4.0));
+  // The camera shows x from 0.4 to 2.3: of two columns in sight the right one does not exist.
+  const Pose2 robot{1.3, 0.0, from_deg(90.0)};
+  ASSERT_EQ(filter.update(images_about(up_camera(), {}, robot, grid)), CeilingUpdate::fused);
+  EXPECT_NEAR(filter.belief().pose.x, robot.x, 1e-3);
+  EXPECT_LT(weight_in_other_columns(filter.belief(), robot), 0.05);
+}
+
+TEST(CeilingFilter, AFallenPatchIsNoEvidenceAgainInEveryFrame) {
+  CeilingGrid grid;
+  grid.extent = CeilingGrid::Extent{{-20.0, -20.0}, {1.0, 20.0}};
+  CeilingFilter filter(up_camera(), grid, {});
+  const Pose2 robot{-0.4, 0.0, 0.0};
   filter.reset({}, near({0.0, 0.0, 0.0}, 0.01, 0.01));
-  filter.update(images_about(up_camera(), {}, {0.0, 0.0, 0.0}));
-  filter.predict_unknown(Stamp::from_seconds(2.5));
-  // One cell to the left of where it is, its patches would be there as well; to the right not.
-  ASSERT_EQ(filter.update(images_about(up_camera(), {}, {-0.4, 0.0, 0.0})), CeilingUpdate::fused);
-  double right = 0.0;
-  for (const auto& one : filter.belief().hypotheses)
-    if (one.pose.x > 0.5) right += one.weight;
-  EXPECT_LT(right, 0.01);
+  filter.predict_unknown(Stamp::from_seconds(4.0));
+  std::vector<PatchImage> images = images_about(up_camera(), {}, robot, grid);
+  images.pop_back();
+  filter.update(images);
+  const double once = weight_in_other_columns(filter.belief(), robot);
+  for (int i = 0; i < 50; ++i) {
+    filter.predict(
+        {filter.belief().stamp, Stamp::from_seconds(4.0 + 0.04 * (i + 1)), 0.0, 0.0, 0.0});
+    filter.update(images);
+  }
+  EXPECT_NEAR(weight_in_other_columns(filter.belief(), robot), once, 0.1);
 }
 
 TEST(CeilingFilter, KeepsAFalsePatchOut) {

@@ -72,9 +72,12 @@ std::vector<CeilingEstimate> follow_jointly(const CeilingSetting& setting,
                                             CeilingMotion motion, double period_s);
 
 /// The camera's errors as they are known at the end of a drive, from its patches alone.
-localization::CeilingCameraErrors calibrate_ceiling(const CeilingSetting& setting,
-                                                    const std::vector<CeilingFrame>& frames,
-                                                    double period_s);
+struct CeilingCalibration {
+  localization::CeilingCameraErrors errors;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+CeilingCalibration calibrate_ceiling(const CeilingSetting& setting,
+                                     const std::vector<CeilingFrame>& frames, double period_s);
 
 /// Poses by optical flow alone, from the first frame's true pose on, with the ceiling's distance
 /// and the tilt known.

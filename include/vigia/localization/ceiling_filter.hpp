@@ -2,6 +2,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct CeilingFilterParams {
   double max_speed_mps = 0.3;  ///< where nothing else is known of the motion
   double sure = 0.99;          ///< a hypothesis is believed alone from this weight on
   double spurious = 0.02;      ///< chance that a patch hangs where the grid has none
+  double missing = 0.05;       ///< … and that one of the grid's is not found in plain sight
   int max_gated = 3;  ///< frames in a row that contradict the prediction, until it is doubted
 };
 
@@ -34,12 +36,15 @@ enum class CeilingUpdate {
 
 /// Extended Kalman filter under a patched ceiling: all visible patches together, odometry and
 /// optical flow as motion. Beside the pose the state has what is constant: the camera's tilt and
-/// height, and the placement error of every patch in view, which is forgotten when it leaves.
+/// height, and the placement error of every patch in view, which is forgotten when it leaves. A
+/// patch's image is far more precise than what is constant is known, so that each update is
+/// linearised again where it ends (iterated): the second order of a degree of heading or tilt is
+/// several times the image's σ.
 ///
 /// A patch has no identity: a fix leaves the pose open by whole cells. Each fix weighs the cells by
 /// the prediction, so that where the robot may have moved by half a pitch unseen several shifts of
 /// the same filter remain, weighted; the belief is then ambiguous until motion, or the edge of a
-/// grid that has one, tells them apart.
+/// grid that has one, tells them apart: a patch where a shift has none, or none where it has one.
 class CeilingFilter {
  public:
   CeilingFilter(const CeilingCamera& camera, const CeilingGrid& grid,
@@ -65,8 +70,9 @@ class CeilingFilter {
 
  private:
   struct Seen {
-    PatchOnCeiling patch;
-    bool directed;  ///< forward and backward are told apart
+    PatchImage image;
+    PatchOnCeiling patch;  ///< by the camera as it is known before the update
+    bool directed;         ///< forward and backward are told apart
     CeilingCell cell;
   };
   /// y = H (truth − x) + e, e ~ N(0, R), three rows a patch.
@@ -80,13 +86,22 @@ class CeilingFilter {
 
   Pose2 pose() const { return Pose2::from_vector(x_.head<3>()); }
   bool wide() const;
+  bool open() const;
   std::vector<Seen> see(const std::vector<PatchImage>& patches) const;
   std::vector<Seen> associated(const std::vector<Seen>& seen, const Pose2& pose) const;
   Pose2 point_of_linearisation(const std::vector<Seen>& seen) const;
-  void hold(const std::vector<Seen>& seen);
-  Linearised linearise(const std::vector<Seen>& seen, const Pose2& at) const;
+  bool in_sight(const CeilingCell& cell, const Pose2& at, double margin_px) const;
+  void hold(const std::vector<Seen>& seen, const Pose2& at);
+  Eigen::VectorXd state_at(const Pose2& pose) const;
+  Linearised linearise(const std::vector<Seen>& seen, const Eigen::VectorXd& at) const;
   std::vector<Seen> gated(const std::vector<Seen>& seen, const Linearised& all) const;
+  Eigen::MatrixXd gain(const Linearised& all) const;
+  Eigen::VectorXd fused_state(const Linearised& all) const;
+  Eigen::VectorXd converged(const std::vector<Seen>& seen, const Pose2& start) const;
   void weigh_shifts(const Linearised& all, const std::vector<Seen>& seen, const Pose2& at);
+  void judge_presence(const std::vector<Seen>& seen, const Pose2& at);
+  void normalise_shifts();
+  void fuse(const Linearised& all);
   void doubt();
   void shift_by(const CeilingCell& shift);
   using MotionJacobian = Eigen::Matrix<double, 3, 6>;
@@ -100,8 +115,10 @@ class CeilingFilter {
   Eigen::MatrixXd P_;
   std::map<CeilingCell, Eigen::Index> patches_;  ///< where a cell's three states begin
   Shifts shifts_;
-  int gated_ = 0;           ///< frames in a row
-  double unknown_s_ = 0.0;  ///< for how long nothing was known of the motion
+  std::set<CeilingCell> judged_;  ///< cells in view whose presence or absence was weighed
+  bool cells_unsure_ = false;  ///< whether the patches before were perhaps the same in other cells
+  int gated_ = 0;              ///< frames in a row
+  double unknown_s_ = 0.0;     ///< for how long nothing was known of the motion
   Stamp stamp_;
   Belief belief_;
 };

@@ -37,7 +37,7 @@ struct PlaneFlowResult {
 /// Ego-motion under a flat ceiling from the grey values at edge pixels. A frame is compared with a
 /// key frame, not with the one before, so that errors grow by the key frame; Gauss–Newton on turn,
 /// shift, gain and offset with a robust weight, from the motion so far carried on, or where that
-/// fails from a search at a quarter of the resolution.
+/// fails from a search in a blurred picture.
 class PlaneFlow {
  public:
   /// @p level turns directions of the camera into those of a camera that looks straight at the
