@@ -112,7 +112,7 @@ CampaignPlan plan_of(const Campaign& campaign, int shards) {
 
 CampaignPlan write_plan(const fs::path& folder, const Campaign& campaign, int shards,
                         bool restart) {
-  const CampaignPlan plan = plan_of(campaign, shards);
+  CampaignPlan plan = plan_of(campaign, shards);
   try {
     fs::create_directories(folder);
     if (!may_hold_a_plan(folder))

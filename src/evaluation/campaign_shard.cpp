@@ -47,7 +47,7 @@ Json checked_json(std::string_view line) {
 /// What makes a shard's file another one than the plan asks for, "" for nothing.
 std::string header_difference(const Json& header, const CampaignPlan& plan, int shard,
                               bool any_version) {
-  const std::string text = difference(plan.provenance, provenance_from(header), any_version);
+  std::string text = difference(plan.provenance, provenance_from(header), any_version);
   if (!text.empty()) return text;
   const int number = header.value("shard", 0);
   const int of = header.value("of", 0);
