@@ -36,6 +36,7 @@ class SceneView {
  private:
   void find_surfaces(const Eigen::Isometry3d& cMw);
   void find_marks(const Eigen::Isometry3d& cMw);
+  void find_stripes(const std::vector<StripeMark>& marks, const Eigen::Isometry3d& cMw);
   void see_surfaces(PixelRow& row);
   void see_row_of_tiles(const Piece& piece, PixelRow& row);
   void see_tile(const Tile& tile, int first, int length, PixelRow& row);
@@ -58,6 +59,7 @@ class SceneView {
   double blur_px_;
   std::vector<SurfaceView> surfaces_;
   std::vector<int> view_of_surface_;
+  std::vector<StripeMark> ceiling_marks_;
   std::vector<StripeView> stripes_;
   std::vector<DecalView> decals_;
   LimbGrid limbs_;

@@ -39,6 +39,7 @@ int run_program(int argc, char** argv) {
   vigia::app::add_landmark(app, status);
   vigia::app::add_calibrate(app, status);
   vigia::app::add_evaluate(app, status);
+  vigia::app::add_campaign(app, status);
   vigia::app::add_reproduce(app, status);
   vigia::app::add_report(app, status);
   vigia::app::add_help(app, status);

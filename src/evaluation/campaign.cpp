@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "vigia/core/key_reference.hpp"
+#include "vigia/core/shell.hpp"
 
 namespace vigia::evaluation {
 namespace {
@@ -198,6 +199,8 @@ Campaign read_campaign(const std::filesystem::path& file,
   campaign.name = said.name;
   campaign.first_seed = said.first_seed;
   campaign.seeds = said.seeds;
+  campaign.command = "vigia evaluate " + shell_word(file.string());
+  for (const auto& assignment : overrides) campaign.command += " --set " + shell_word(assignment);
   const auto dimensions = dimensions_of(reader, said);
   std::vector<std::size_t> picks(dimensions.size(), 0);
   do {

@@ -1,21 +1,17 @@
 #include "vigia/evaluation/campaign_journal.hpp"
 
 #include "checked_line.hpp"
+#include "mission_line.hpp"
 #include "score_json.hpp"
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include "vigia/core/error.hpp"
 #include "vigia/core/output_file.hpp"
+#include "vigia/evaluation/provenance.hpp"
 
 namespace vigia::evaluation {
 namespace {
@@ -25,33 +21,16 @@ namespace fs = std::filesystem;
 constexpr const char* kHeader = "campaign.json";
 constexpr const char* kJournal = "journal.jsonl";
 
-std::string read_bytes(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-[[noreturn]] void fail(const std::string& what, const fs::path& path) {
-  throw InputError(fmt::format("cannot {} {}: {}", what, path.string(), std::strerror(errno)));
-}
-
-/// Tells the program from any other that was built from other sources.
-std::string build_fingerprint() {
-  return fingerprint(read_bytes("/proc/self/exe"));
-}
-
 std::string header_text(const Campaign& campaign) {
   Json header{{"campaign", campaign.name},
               {"version", VIGIA_VERSION},
               {"build", build_fingerprint()},
+              {"command", campaign.command},
               {"arms", Json::array()}};
   for (const Arm& arm : campaign.arms)
     header["arms"].push_back(
         {{"name", arm.name}, {"mission", fingerprint(arm.setup.resolved_yaml)}});
   return header.dump(2) + "\n";
-}
-
-std::string mission_file(std::size_t arm) {
-  return fmt::format("missions/{:03}.yaml", arm);
 }
 
 /// The first line of @p text that @p other lacks, wherever: an override may move a key.
@@ -93,10 +72,6 @@ void forget(const fs::path& folder) {
 
 }  // namespace
 
-Descriptor::~Descriptor() {
-  if (number_ >= 0) ::close(number_);
-}
-
 CampaignJournal::CampaignJournal(const fs::path& folder, const Campaign& campaign, bool restart)
     : folder_(folder), campaign_(campaign) {
   try {
@@ -104,7 +79,7 @@ CampaignJournal::CampaignJournal(const fs::path& folder, const Campaign& campaig
     if (!is_ours(folder_))
       throw InputError("the folder " + folder_.string() + " holds no " + kHeader +
                        ", so it is not one of ours; choose another --out");
-    lock();
+    lock_ = lock_folder(folder_);
     if (restart) forget(folder_);
     const std::string header = header_text(campaign);
     if (fs::exists(folder_ / kHeader))
@@ -116,14 +91,6 @@ CampaignJournal::CampaignJournal(const fs::path& folder, const Campaign& campaig
   } catch (const fs::filesystem_error& error) {
     throw InputError("cannot use the folder " + folder_.string() + ": " + error.code().message());
   }
-}
-
-void CampaignJournal::lock() {
-  // The kernel drops the lock with the process, however that ends.
-  lock_ = Descriptor(::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (lock_.get() < 0) fail("open", folder_);
-  if (::flock(lock_.get(), LOCK_EX | LOCK_NB) != 0)
-    throw InputError("another process is at work in " + folder_.string());
 }
 
 void CampaignJournal::check_header(const std::string& header) const {
@@ -154,40 +121,28 @@ void CampaignJournal::check_header(const std::string& header) const {
 
 void CampaignJournal::read() {
   const fs::path file = folder_ / kJournal;
-  journal_ = Descriptor(::open(file.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
-  if (journal_.get() < 0) fail("open", file);
+  journal_ = open_to_append(file);
   const std::string text = read_bytes(file);
   std::size_t begin = 0;
   for (int number = 1; begin < text.size(); ++number) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const auto object = end < text.size()
-                            ? unchecked(std::string_view(text).substr(begin, end - begin))
-                            : std::nullopt;
-    if (!object) {
+    const auto mission = end < text.size()
+                             ? read_mission_line(std::string_view(text).substr(begin, end - begin))
+                             : std::nullopt;
+    if (!mission) {
       if (end + 1 < text.size())
         throw InputError({file.string(), number, 1},
                          "this line is damaged, and it is not the last; mend or delete it");
       if (::ftruncate(journal_.get(), static_cast<off_t>(begin)) != 0) fail("mend", file);
       return;
     }
-    const Json line = Json::parse(*object);
-    const DriveScore score = score_from_json(line.at("score"));
-    finished_[{line.at("arm").get<std::size_t>(), score.seed}] = score;
+    finished_[mission->task] = mission->score;
     begin = end + 1;
   }
 }
 
 void CampaignJournal::append(const CampaignTask& task, const DriveScore& score) {
-  const std::string line =
-      checked_line(fmt::format("{{\"arm\":{},\"score\":{}}}", task.arm, score_record(score)));
-  // One call: lines of an interrupted process are whole or the last.
-  std::string_view rest = line;
-  while (!rest.empty()) {
-    const ssize_t written = ::write(journal_.get(), rest.data(), rest.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail("write", folder_ / kJournal);
-    rest.remove_prefix(static_cast<std::size_t>(written));
-  }
+  append_line(journal_, mission_line(task, score), folder_ / kJournal);
   finished_[task] = score;
 }
 

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include "vigia/core/angle.hpp"
+#include "vigia/evaluation/provenance.hpp"
 #include "vigia/evaluation/text_table.hpp"
 
 namespace vigia::evaluation {
@@ -247,14 +248,26 @@ std::string campaign_csv(const Campaign& campaign,
   return text;
 }
 
-std::string campaign_json(const Campaign& campaign, const std::vector<ArmStatistics>& statistics) {
+std::string campaign_json(const Campaign& campaign, const std::vector<ArmStatistics>& statistics,
+                          const std::vector<WorstMission>& worst,
+                          const std::vector<std::string>& programs) {
   Json json{{"campaign", campaign.name},
             {"version", VIGIA_VERSION},
+            {"command", campaign.command},
+            {"configuration", configuration_of(campaign)},
             {"seeds", {{"first", campaign.first_seed}, {"count", campaign.seeds}}},
             {"baseline", campaign.arms[campaign.baseline].name},
             {"arms", Json::array()}};
   for (std::size_t i = 0; i < statistics.size(); ++i)
     json["arms"].push_back(arm_json(campaign.arms[i], statistics[i]));
+  json["worst"] = Json::array();
+  for (const WorstMission& m : worst)
+    json["worst"].push_back({{"arm", campaign.arms[m.task.arm].name},
+                             {"seed", m.task.seed},
+                             {"outcome", to_string(m.outcome)},
+                             {"position_max_m", m.position_max_m},
+                             {"command", repeat_command(m.task, ".")}});
+  if (!programs.empty()) json["mixed_programs"] = programs;
   return json.dump(2) + "\n";
 }
 

@@ -247,6 +247,20 @@ void describe(ParamVisitor& v, MissionSetup& setup) {
   v.map("route", "the drive", [&] { describe_route(v, setup); });
 }
 
+namespace {
+
+/// All but the route.
+MissionSetup read_mission(MapReader& mission, const ConfigNode& root) {
+  MissionSetup setup;
+  ParamReader visitor(mission);
+  describe(visitor, setup);
+  mission.finish();
+  setup.resolved_yaml = dump_config(root);
+  return setup;
+}
+
+}  // namespace
+
 std::vector<KeyRow> mission_keys() {
   return key_reference<MissionSetup>("");
 }
@@ -256,12 +270,17 @@ MissionSetup load_mission(const std::filesystem::path& file,
   const auto root = load_config(file);
   for (const auto& assignment : overrides) set_config(*root, assignment);
   MapReader mission(root, "mission");
-  MissionSetup setup;
-  ParamReader visitor(mission);
-  describe(visitor, setup);
-  mission.finish();
-  setup.resolved_yaml = dump_config(*root);
+  MissionSetup setup = read_mission(mission, *root);
   plan_mission_route(mission.map("route"), setup);
+  return setup;
+}
+
+MissionSetup load_planned_mission(const std::filesystem::path& file, const Path& route) {
+  const auto root = load_config(file);
+  MapReader mission(root, "mission");
+  MissionSetup setup = read_mission(mission, *root);
+  setup.route.robot_radius_m = setup.robot.robot.radius_m;
+  setup.path = route;
   return setup;
 }
 

@@ -46,7 +46,7 @@ class Journal : public ::testing::Test {
     CampaignJournal journal(folder_, small_campaign(), false);
     run_campaign(small_campaign(), journal, threads);
     std::vector<std::string> records;
-    for (const auto& arm : scores_by_arm(small_campaign(), journal))
+    for (const auto& arm : scores_by_arm(small_campaign(), journal.finished()))
       for (const auto& score : arm) records.push_back(score_record(score));
     return records;
   }

@@ -101,7 +101,7 @@ TEST(CampaignReport, SaysWhatShareOfTheLossesWasSaidInTimeAndEnded) {
   EXPECT_EQ(markdown_cell(table, "a", "found again"), " 7/10 [34.8, 93.3] % ");
   EXPECT_EQ(markdown_cell(table, "b", "times lost"), " 0 ");
   EXPECT_EQ(markdown_cell(table, "b", "said before 50 cm"), " – ");
-  const auto json = nlohmann::json::parse(campaign_json(campaign, statistics));
+  const auto json = nlohmann::json::parse(campaign_json(campaign, statistics, {}));
   EXPECT_EQ(json["arms"][0]["lost"]["announced"]["count"], 9);
   EXPECT_EQ(json["arms"][0]["lost"]["recovered"]["count"], 7);
   EXPECT_EQ(json["arms"][0]["lost"]["recovered"]["of"], 10);
@@ -133,12 +133,27 @@ TEST(CampaignReport, HasOneRowAnArmSeedAndLocalizer) {
 TEST(CampaignReport, NamesTheBaselineAndLeavesItWithoutDifferences) {
   const auto campaign = two_arms();
   const auto statistics = campaign_statistics(campaign, two_arms_scores());
-  const auto json = nlohmann::json::parse(campaign_json(campaign, statistics));
+  const auto json = nlohmann::json::parse(campaign_json(campaign, statistics, {}));
   EXPECT_EQ(json["baseline"], "b");
   EXPECT_NEAR(json["arms"][0]["differences"]["looks"]["value"].get<double>(), 2.0, 1e-12);
   EXPECT_TRUE(json["arms"][1]["differences"].empty());
   EXPECT_THAT(campaign_text(campaign, statistics), HasSubstr("differences from b"));
   EXPECT_THAT(campaign_markdown(campaign, statistics), HasSubstr("| a | 3/3 [29.2, 100.0] % |"));
+}
+
+TEST(WorstMissions, AreThoseThatDidNotArriveThenThoseWithTheLargestErrors) {
+  auto scores = two_arms_scores();
+  for (auto& arm : scores)
+    for (auto& score : arm) score.localizers["ekf"].position_max_m = 0.1;
+  scores[0][1].localizers["ekf"].position_max_m = 0.9;
+  scores[1][2].outcome = mission::Outcome::stuck;
+  const auto worst = worst_missions(scores, 2);
+  ASSERT_EQ(worst.size(), 2u);
+  EXPECT_EQ(
+      repeat_command(worst[0].task, "my campaign"),
+      "vigia run 'my campaign/missions/001.yaml' --seed " + std::to_string(scores[1][2].seed));
+  EXPECT_EQ(repeat_command(worst[1].task, "."),
+            "vigia run missions/000.yaml --seed " + std::to_string(scores[0][1].seed));
 }
 
 TEST(LossWatch, OpensWhenItSaysSoAndClosesWhenItTracksWithASmallError) {

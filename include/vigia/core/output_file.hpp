@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <string_view>
 
 namespace vigia {
@@ -19,6 +20,8 @@ class OutputFile {
   void flush();
   /// Flushes and closes; what was written is on its way to the disk without error.
   void close();
+  /// Flushes and waits until the disk has it: it stays when the machine ends suddenly.
+  void sync();
 
  private:
   struct Closer {
@@ -33,5 +36,12 @@ class OutputFile {
 /// Writes a whole file aside and then gives it its name: either the old or the new content is
 /// there, never half of one.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
+
+/// The same for a file that processes on several machines may write at once: each writes aside
+/// under a name of its own, and the disk has the bytes before the file has its name.
+void write_shared_file(const std::filesystem::path& path, std::string_view bytes);
+
+/// ".part-<host>-<process>-<random number>": the end of a name that no other process uses.
+std::string own_part_suffix();
 
 }  // namespace vigia

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "vigia/mission/setup.hpp"
@@ -23,15 +24,30 @@ struct Arm {
   mission::MissionSetup setup;         ///< shared by all missions of the arm
 };
 
+/// One mission of a campaign.
+struct CampaignTask {
+  std::size_t arm = 0;
+  std::uint64_t seed = 0;
+  bool operator<(const CampaignTask& other) const {
+    return std::tie(seed, arm) < std::tie(other.seed, other.arm);
+  }
+};
+
 /// Seeds × policies × localizers × disturbances × variants of one mission.
 struct Campaign {
   std::string name;
+  std::string command;  ///< that drives it in one process
   std::uint64_t first_seed = 1;
   int seeds = 100;
   std::vector<Arm> arms;
   std::size_t baseline = 0;  ///< the arm from which differences count
 
   std::size_t missions() const { return arms.size() * static_cast<std::size_t>(seeds); }
+  /// Mission @p number of 0 … missions() − 1. Seed by seed: stopped early, every arm has as many
+  /// drives as the others, give or take one.
+  CampaignTask task(std::size_t number) const {
+    return {number % arms.size(), first_seed + number / arms.size()};
+  }
 };
 
 /// The reference of a campaign's keys.

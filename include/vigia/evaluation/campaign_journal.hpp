@@ -3,38 +3,12 @@
 #include <filesystem>
 #include <map>
 #include <string>
-#include <tuple>
-#include <utility>
 
 #include "vigia/evaluation/campaign.hpp"
+#include "vigia/evaluation/descriptor.hpp"
 #include "vigia/evaluation/drive_score.hpp"
 
 namespace vigia::evaluation {
-
-/// One mission of a campaign.
-struct CampaignTask {
-  std::size_t arm = 0;
-  std::uint64_t seed = 0;
-  bool operator<(const CampaignTask& other) const {
-    return std::tie(seed, arm) < std::tie(other.seed, other.arm);
-  }
-};
-
-/// An open file, closed with this.
-class Descriptor {
- public:
-  explicit Descriptor(int number = -1) : number_(number) {}
-  ~Descriptor();
-  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(number_, other.number_);
-    return *this;
-  }
-  int get() const { return number_; }
-
- private:
-  int number_;
-};
 
 /// The folder of a campaign in progress. A mission that is finished is one line at the end of
 /// journal.jsonl, with a checksum: killed at any moment, what is lost is the missions that were
@@ -56,7 +30,6 @@ class CampaignJournal {
   const std::filesystem::path& folder() const { return folder_; }
 
  private:
-  void lock();
   void check_header(const std::string& header) const;
   void read();
 

@@ -104,4 +104,7 @@ std::vector<KeyRow> mission_keys();
 MissionSetup load_mission(const std::filesystem::path& file,
                           const std::vector<std::string>& overrides = {});
 
+/// Reads a mission whose route was planned before: plans none.
+MissionSetup load_planned_mission(const std::filesystem::path& file, const Path& route);
+
 }  // namespace vigia::mission
