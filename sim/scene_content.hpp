@@ -15,6 +15,7 @@
 
 #include "vigia/core/world_map.hpp"
 #include "vigia/sim/appearance.hpp"
+#include "vigia/sim/ceiling_truth.hpp"
 
 namespace vigia::sim {
 
@@ -36,6 +37,13 @@ struct SceneContent {
     std::size_t carpet;  ///< index of the surface
   };
   std::optional<PaintedField> field;
+  /// A ceiling of patches; what of it is seen is found anew for each exposure.
+  struct PatchedCeiling {
+    CeilingTruth truth;
+    double height_m;
+    std::size_t surface;
+  };
+  std::optional<PatchedCeiling> ceiling;
 
  private:
   void lay_out(const FieldMap& map, const FloorPlan& plan, const Appearance& look);

@@ -1,5 +1,6 @@
 #include "scene_view.hpp"
 
+#include "ceiling_paint.hpp"
 #include "simd.hpp"
 
 #include <algorithm>
@@ -94,11 +95,20 @@ void SceneView::find_surfaces(const Eigen::Isometry3d& cMw) {
   }
 }
 
-void SceneView::find_marks(const Eigen::Isometry3d& cMw) {
-  for (const StripeMark& mark : content_.stripes) {
+void SceneView::find_stripes(const std::vector<StripeMark>& marks, const Eigen::Isometry3d& cMw) {
+  for (const StripeMark& mark : marks) {
     if (view_of_surface_[mark.surface] < 0) continue;
     const StripeView view(mark, cMw);
     if (view.faces_camera()) stripes_.push_back(view);
+  }
+}
+
+void SceneView::find_marks(const Eigen::Isometry3d& cMw) {
+  find_stripes(content_.stripes, cMw);
+  if (content_.ceiling && view_of_surface_[content_.ceiling->surface] >= 0) {
+    ceiling_marks_ = ceiling_marks(content_.ceiling->truth, content_.ceiling->height_m,
+                                   content_.ceiling->surface, wMc_, model_);
+    find_stripes(ceiling_marks_, cMw);
   }
   for (const Decal& decal : content_.decals) {
     if (view_of_surface_[decal.surface] < 0) continue;

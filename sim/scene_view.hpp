@@ -36,6 +36,7 @@ class SceneView {
  private:
   void find_surfaces(const Eigen::Isometry3d& cMw);
   void find_marks(const Eigen::Isometry3d& cMw);
+  void find_stripes(const std::vector<StripeMark>& marks, const Eigen::Isometry3d& cMw);
   void find_limbs(const std::vector<BodyPart>& parts);
   void see_surfaces(int u, int v, int count, PixelRow& row);
   void see_tile(const Tile& tile, int first, int length, PixelRow& row);
@@ -58,6 +59,7 @@ class SceneView {
   double blur_px_;
   std::vector<SurfaceView> surfaces_;
   std::vector<int> view_of_surface_;
+  std::vector<StripeMark> ceiling_marks_;
   std::vector<StripeView> stripes_;
   std::vector<DecalView> decals_;
   std::vector<BodyPartView> limbs_;

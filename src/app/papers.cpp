@@ -11,6 +11,8 @@ const std::vector<Paper>& papers() {
        &reproduce_minho},
       {"bais", "one landmark from two points: running fix against range and bearing",
        &reproduce_bais},
+      {"chonbuk", "patches on a ceiling without identity, edge-based optical flow, their fusion",
+       &reproduce_chonbuk},
   };
   return all;
 }

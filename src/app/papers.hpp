@@ -30,6 +30,7 @@ const std::vector<Paper>& papers();
 // The experiments, each in a file of its own, reproduce_<name>.cpp.
 evaluation::PaperTable reproduce_armingol(const PaperOptions& options);
 evaluation::PaperTable reproduce_bais(const PaperOptions& options);
+evaluation::PaperTable reproduce_chonbuk(const PaperOptions& options);
 evaluation::PaperTable reproduce_minho(const PaperOptions& options);
 evaluation::PaperTable reproduce_quixote(const PaperOptions& options);
 

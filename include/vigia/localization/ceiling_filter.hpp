@@ -1,0 +1,126 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "vigia/core/belief.hpp"
+#include "vigia/core/odometry.hpp"
+#include "vigia/localization/ceiling_model.hpp"
+
+namespace vigia::localization {
+
+struct CeilingFilterParams {
+  OdometryNoise odometry;
+  double tilt_sigma = 0.0;    ///< rad about either axis: what the calibration leaves
+  double height_sigma = 0.0;  ///< of the ceiling's distance, relative
+  double gate = 16.27;        ///< χ² of a patch's three numbers
+  double flow_floor = 2e-4;   ///< σ of a frame's shift beside what it claims, in ceiling distances
+  double max_speed_mps = 0.3;  ///< where nothing else is known of the motion
+  double sure = 0.99;          ///< a hypothesis is believed alone from this weight on
+  double spurious = 0.02;      ///< chance that a patch hangs where the grid has none
+  double missing = 0.05;       ///< … and that one of the grid's is not found in plain sight
+  int max_gated = 3;  ///< frames in a row that contradict the prediction, until it is doubted
+};
+
+/// What became of a frame's patches.
+enum class CeilingUpdate {
+  fused,
+  none_seen,
+  gated,  ///< none agrees with the grid
+};
+
+/// Extended Kalman filter under a patched ceiling: all visible patches together, odometry and
+/// optical flow as motion. Beside the pose the state has what is constant: the camera's tilt and
+/// height, and the placement error of every patch in view, which is forgotten when it leaves. A
+/// patch's image is far more precise than what is constant is known, so that each update is
+/// linearised again where it ends (iterated): the second order of a degree of heading or tilt is
+/// several times the image's σ.
+///
+/// A patch has no identity: a fix leaves the pose open by whole cells. Each fix weighs the cells by
+/// the prediction, so that where the robot may have moved by half a pitch unseen several shifts of
+/// the same filter remain, weighted; the belief is then ambiguous until motion, or the edge of a
+/// grid that has one, tells them apart: a patch where a shift has none, or none where it has one.
+class CeilingFilter {
+ public:
+  CeilingFilter(const CeilingCamera& camera, const CeilingGrid& grid,
+                const CeilingFilterParams& params);
+
+  void reset(Stamp stamp, const Prior& prior);
+  void predict(const OdometryIncrement& increment);
+  /// The motion between two frames by optical flow.
+  void predict(const ImageShift& shift, Stamp to);
+  /// Nothing is known but how fast the robot may be.
+  void predict_unknown(Stamp to);
+  CeilingUpdate update(const std::vector<PatchImage>& patches);
+
+  const Belief& belief() const { return belief_; }
+  /// What is known of the camera's constant errors by now, and its covariance.
+  CeilingCameraErrors camera_errors() const;
+  Eigen::Matrix3d camera_errors_covariance() const;
+
+  /// For bounds: the same recursion linearised at the truth. Replaces the mean, errors of the
+  /// camera and of the patches in view among it.
+  void relinearise(const Pose2& pose, const CeilingCameraErrors& errors,
+                   const std::map<CeilingCell, Eigen::Vector3d>& placement);
+
+ private:
+  struct Seen {
+    PatchImage image;
+    PatchOnCeiling patch;  ///< by the camera as it is known before the update
+    bool directed;         ///< forward and backward are told apart
+    CeilingCell cell;
+  };
+  /// y = H (truth − x) + e, e ~ N(0, R), three rows a patch.
+  struct Linearised {
+    Eigen::VectorXd y;
+    Eigen::MatrixXd H;
+    Eigen::MatrixXd R;
+    Eigen::MatrixXd S;
+  };
+  using Shifts = std::map<CeilingCell, double>;  ///< by whole cells, weights
+
+  Pose2 pose() const { return Pose2::from_vector(x_.head<3>()); }
+  bool wide() const;
+  bool open() const;
+  std::vector<Seen> see(const std::vector<PatchImage>& patches) const;
+  std::vector<Seen> associated(const std::vector<Seen>& seen, const Pose2& pose) const;
+  Pose2 point_of_linearisation(const std::vector<Seen>& seen) const;
+  bool in_sight(const CeilingCell& cell, const Pose2& at, double margin_px) const;
+  void hold(const std::vector<Seen>& seen, const Pose2& at);
+  Eigen::VectorXd state_at(const Pose2& pose) const;
+  Linearised linearise(const std::vector<Seen>& seen, const Eigen::VectorXd& at) const;
+  std::vector<Seen> gated(const std::vector<Seen>& seen, const Linearised& all) const;
+  Eigen::MatrixXd gain(const Linearised& all) const;
+  Eigen::VectorXd fused_state(const Linearised& all) const;
+  Eigen::VectorXd converged(const std::vector<Seen>& seen, const Pose2& start) const;
+  void weigh_shifts(const Linearised& all, const std::vector<Seen>& seen, const Pose2& at);
+  void judge_presence(const std::vector<Seen>& seen, const Pose2& at);
+  void normalise_shifts();
+  void fuse(const Linearised& all);
+  void doubt();
+  void shift_by(const CeilingCell& shift);
+  using MotionJacobian = Eigen::Matrix<double, 3, 6>;
+  void move(const Pose2& to, const MotionJacobian& F, const Eigen::Matrix3d& Q);
+  void refresh_belief();
+
+  CeilingCamera camera_;
+  CeilingGrid grid_;
+  CeilingFilterParams params_;
+  Eigen::VectorXd x_;  ///< x, y, θ, tilt, tilt, log height, then three a patch
+  Eigen::MatrixXd P_;
+  std::map<CeilingCell, Eigen::Index> patches_;  ///< where a cell's three states begin
+  Shifts shifts_;
+  std::set<CeilingCell> judged_;  ///< cells in view whose presence or absence was weighed
+  bool cells_unsure_ = false;  ///< whether the patches before were perhaps the same in other cells
+  int gated_ = 0;              ///< frames in a row
+  double unknown_s_ = 0.0;     ///< for how long nothing was known of the motion
+  Stamp stamp_;
+  Belief belief_;
+};
+
+}  // namespace vigia::localization

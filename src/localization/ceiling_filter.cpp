@@ -1,0 +1,473 @@
+#include "vigia/localization/ceiling_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Dense>
+
+#include "vigia/core/angle.hpp"
+#include "vigia/core/plane_geometry.hpp"
+
+namespace vigia::localization {
+namespace {
+
+constexpr Eigen::Index kCommon = 6;      // states before the patches'
+constexpr double kPatchAgrees_m = 0.06;  // two patches of one grid, whatever their errors
+constexpr double kDirected = 5.0;        // log-odds
+constexpr int kFarthestShift = 6;        // cells that are weighed each way, at most
+constexpr double kNegligible = 1e-6;
+constexpr double kForgotten_px = 40.0;  // beyond the border
+constexpr double kPlain_px = 8.0;       // from the border: a patch there should be found
+constexpr int kIterations = 5;
+constexpr double kAtRest = 1e-7;
+
+Eigen::Matrix2d world_to_robot(double theta) {
+  return Eigen::Rotation2Dd(-theta).toRotationMatrix();
+}
+
+/// Of two directions of a patch, one of which may be turned half round.
+double direction_difference(double a, double b, bool directed) {
+  const double off = wrap_angle(a - b);
+  if (directed || std::abs(off) <= 0.5 * kPi) return off;
+  return wrap_angle(off + kPi);
+}
+
+}  // namespace
+
+CeilingFilter::CeilingFilter(const CeilingCamera& camera, const CeilingGrid& grid,
+                             const CeilingFilterParams& params)
+    : camera_(camera), grid_(grid), params_(params) {
+  reset({}, anywhere());
+}
+
+void CeilingFilter::reset(Stamp stamp, const Prior& prior) {
+  stamp_ = stamp;
+  x_ = Eigen::VectorXd::Zero(kCommon);
+  x_.head<3>() = prior.pose.vector();
+  P_ = Eigen::MatrixXd::Zero(kCommon, kCommon);
+  P_.topLeftCorner<3, 3>() = prior.covariance;
+  P_(3, 3) = P_(4, 4) = params_.tilt_sigma * params_.tilt_sigma;
+  P_(5, 5) = params_.height_sigma * params_.height_sigma;
+  patches_.clear();
+  shifts_ = {{CeilingCell{}, 1.0}};
+  judged_.clear();
+  cells_unsure_ = false;
+  gated_ = 0;
+  unknown_s_ = 0.0;
+  refresh_belief();
+}
+
+CeilingCameraErrors CeilingFilter::camera_errors() const {
+  return CeilingCameraErrors::from_vector(x_.segment<3>(3));
+}
+
+Eigen::Matrix3d CeilingFilter::camera_errors_covariance() const {
+  return P_.block<3, 3>(3, 3);
+}
+
+void CeilingFilter::move(const Pose2& to, const MotionJacobian& F, const Eigen::Matrix3d& Q) {
+  x_.head<3>() = to.vector();
+  const Eigen::MatrixXd rows = F * P_.topRows<kCommon>();
+  P_.topRows<3>() = rows;
+  P_.leftCols<3>().bottomRows(P_.rows() - 3) = rows.rightCols(P_.cols() - 3).transpose();
+  const Eigen::Matrix3d pose = rows.leftCols<kCommon>() * F.transpose();
+  P_.topLeftCorner<3, 3>() = 0.5 * (pose + pose.transpose()) + Q;
+  refresh_belief();
+}
+
+void CeilingFilter::predict(const OdometryIncrement& u) {
+  const Pose2 from = pose();
+  MotionJacobian F = MotionJacobian::Zero();
+  F.leftCols<3>() = move_jacobian_pose(from, u);
+  const Eigen::Matrix3d G = move_jacobian_control(from, u);
+  stamp_ = u.to;
+  move(vigia::move(from, u), F, G * control_covariance(u, params_.odometry) * G.transpose());
+}
+
+void CeilingFilter::predict(const ImageShift& shift, Stamp to) {
+  const Pose2 from = pose();
+  const CeilingCamera camera = corrected(camera_, camera_errors());
+  const Pose2 motion = robot_motion(camera, shift);
+  const Eigen::Matrix2d R = Eigen::Rotation2Dd(from.theta).toRotationMatrix();
+  const Eigen::Vector2d step = R * motion.position();
+  MotionJacobian F = MotionJacobian::Zero();
+  F.leftCols<3>().setIdentity();
+  F.block<2, 1>(0, 2) = Eigen::Vector2d(-step.y(), step.x());
+  F.block<2, 1>(0, 5) = R * (camera.rise_m() * shift.shift);
+  Eigen::Matrix3d G = Eigen::Matrix3d::Identity();
+  G.topLeftCorner<2, 2>() = camera.rise_m() * R;
+  Eigen::Matrix3d covariance = shift.covariance;
+  covariance.diagonal().array() += params_.flow_floor * params_.flow_floor;
+  stamp_ = to;
+  move(compose(from, motion), F, G * covariance * G.transpose());
+}
+
+void CeilingFilter::predict_unknown(Stamp to) {
+  // The robot may have kept one direction all the time: σ grows as the time, not as its root.
+  const double before = unknown_s_;
+  unknown_s_ += (to - stamp_).seconds();
+  const double reach = 0.5 * params_.max_speed_mps;
+  const double turn = 2.0 * params_.max_speed_mps;  // rad/s, of a robot half a metre wide
+  const double grown = unknown_s_ * unknown_s_ - before * before;
+  Eigen::Matrix3d Q = Eigen::Matrix3d::Zero();
+  Q.diagonal() << reach * reach * grown, reach * reach * grown, turn * turn * grown;
+  MotionJacobian F = MotionJacobian::Zero();
+  F.leftCols<3>().setIdentity();
+  stamp_ = to;
+  move(pose(), F, Q);
+}
+
+/// Whether the prediction does not tell by itself which patch is which.
+bool CeilingFilter::wide() const {
+  return belief_.position_sigma() > 0.1 * grid_.pitch_m || P_(2, 2) > from_deg(8.0) * from_deg(8.0);
+}
+
+/// Whether the robot may be half a pitch from the mean.
+bool CeilingFilter::open() const {
+  return 3.0 * belief_.position_sigma() > 0.5 * grid_.pitch_m;
+}
+
+std::vector<CeilingFilter::Seen> CeilingFilter::see(const std::vector<PatchImage>& patches) const {
+  std::vector<Seen> seen;
+  for (const PatchImage& patch : patches)
+    if (const auto on = on_ceiling(camera_, patch, camera_errors()))
+      seen.push_back({patch, *on, patch.forward_log_odds >= kDirected, {}});
+  return seen;
+}
+
+/// Those that agree with the grid as seen from @p pose, each with its cell.
+std::vector<CeilingFilter::Seen> CeilingFilter::associated(const std::vector<Seen>& seen,
+                                                           const Pose2& pose) const {
+  std::map<CeilingCell, std::pair<double, Seen>> by_cell;
+  // Where the pose is one of the patches' the others must agree with it, not with the prediction.
+  const double sigmas = wide() ? 0.0 : 3.0;
+  const double near = kPatchAgrees_m + 4.0 * grid_.placement_m + sigmas * belief_.position_sigma();
+  const double turn_slack = sigmas * std::sqrt(P_(2, 2));
+  for (Seen one : seen) {
+    const Eigen::Vector2d p = pose.position() + world_to_robot(-pose.theta) * one.patch.q;
+    one.cell = nearest_cell(grid_, p);
+    const double off = (cell_centre(grid_, one.cell) - p).norm();
+    const double turn = direction_difference(-pose.theta, one.patch.psi, one.directed);
+    if (off > near + turn_slack * one.patch.q.norm()) continue;
+    if (std::abs(turn) > 0.25 + 4.0 * grid_.placement_turn) continue;
+    const auto found = by_cell.find(one.cell);
+    if (found == by_cell.end())
+      by_cell.emplace(one.cell, std::pair{off, one});
+    else if (off < found->second.first)
+      found->second = {off, one};
+  }
+  std::vector<Seen> result;
+  for (auto& [cell, one] : by_cell) result.push_back(one.second);
+  return result;
+}
+
+/// The prediction, or where it is wide the pose by one of the patches with which most agree.
+Pose2 CeilingFilter::point_of_linearisation(const std::vector<Seen>& seen) const {
+  if (!wide()) return pose();
+  Pose2 best = pose();
+  std::size_t most = 0;
+  for (const Seen& reference : seen) {
+    const double off = direction_difference(-pose().theta, reference.patch.psi, reference.directed);
+    Pose2 at = pose();
+    at.theta = wrap_angle(pose().theta + off);
+    const Eigen::Vector2d turned = world_to_robot(-at.theta) * reference.patch.q;
+    const Eigen::Vector2d p =
+        cell_centre(grid_, nearest_cell(grid_, pose().position() + turned)) - turned;
+    at.x = p.x();
+    at.y = p.y();
+    const std::size_t agree = associated(seen, at).size();
+    if (agree <= most) continue;
+    most = agree;
+    best = at;
+  }
+  return best;
+}
+
+/// Whether the camera shows all of a cell's patch, @p margin_px from the border or more.
+bool CeilingFilter::in_sight(const CeilingCell& cell, const Pose2& at, double margin_px) const {
+  const CeilingCamera camera = corrected(camera_, camera_errors());
+  const Eigen::Isometry3d cMw = (to_isometry(at) * camera.rMc).inverse();
+  const Eigen::Vector2d p = cell_centre(grid_, cell);
+  for (const double end : {-0.5, 0.5}) {
+    const Eigen::Vector3d p_w(p.x() + end * grid_.length_m, p.y(), camera.ceiling_m);
+    const auto uv = project(camera.model, cMw * p_w);
+    if (!uv || !in_image(camera.model, *uv, margin_px)) return false;
+  }
+  return true;
+}
+
+/// Keeps the placement errors of the cells in view, forgets the others, admits the new ones. Where
+/// several shifts of the prediction are possible, a patch's cell may be another than it was.
+void CeilingFilter::hold(const std::vector<Seen>& seen, const Pose2& at) {
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < kCommon; ++i) kept.push_back(i);
+  std::map<CeilingCell, Eigen::Index> places;
+  cells_unsure_ = open() && !patches_.empty();
+  if (open()) {
+    judged_.clear();
+  } else {
+    for (const auto& [cell, place] : patches_) {
+      if (!in_sight(cell, at, -kForgotten_px)) continue;
+      places[cell] = static_cast<Eigen::Index>(kept.size());
+      for (Eigen::Index i = 0; i < 3; ++i) kept.push_back(place + i);
+    }
+  }
+  std::vector<CeilingCell> fresh;
+  for (const Seen& one : seen)
+    if (places.count(one.cell) == 0) fresh.push_back(one.cell);
+  const auto old = static_cast<Eigen::Index>(kept.size());
+  const Eigen::Index size = old + 3 * static_cast<Eigen::Index>(fresh.size());
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(size);
+  Eigen::MatrixXd P = Eigen::MatrixXd::Zero(size, size);
+  for (Eigen::Index i = 0; i < old; ++i) {
+    x[i] = x_[kept[static_cast<std::size_t>(i)]];
+    for (Eigen::Index j = 0; j < old; ++j)
+      P(i, j) = P_(kept[static_cast<std::size_t>(i)], kept[static_cast<std::size_t>(j)]);
+  }
+  Eigen::Index place = old;
+  for (const CeilingCell& cell : fresh) {
+    places[cell] = place;
+    P(place, place) = P(place + 1, place + 1) = grid_.placement_m * grid_.placement_m;
+    P(place + 2, place + 2) = grid_.placement_turn * grid_.placement_turn;
+    place += 3;
+  }
+  x_ = std::move(x);
+  P_ = std::move(P);
+  patches_ = std::move(places);
+}
+
+/// The mean with another pose.
+Eigen::VectorXd CeilingFilter::state_at(const Pose2& pose) const {
+  Eigen::VectorXd at = x_;
+  at.head<3>() = pose.vector();
+  return at;
+}
+
+CeilingFilter::Linearised CeilingFilter::linearise(const std::vector<Seen>& seen,
+                                                   const Eigen::VectorXd& at) const {
+  const auto rows = 3 * static_cast<Eigen::Index>(seen.size());
+  Linearised all{Eigen::VectorXd::Zero(rows),
+                 Eigen::MatrixXd::Zero(rows, x_.size()),
+                 Eigen::MatrixXd::Identity(rows, rows),
+                 {}};
+  const auto errors = CeilingCameraErrors::from_vector(at.segment<3>(3));
+  const double theta = at[2];
+  const Eigen::Matrix2d R = world_to_robot(theta);
+  Eigen::Index row = 0;
+  for (const Seen& one : seen) {
+    const PatchOnCeiling patch = on_ceiling(camera_, one.image, errors).value_or(one.patch);
+    const Eigen::Index place = patches_.at(one.cell);
+    const Eigen::Vector2d out = cell_centre(grid_, one.cell) + at.segment<2>(place) - at.head<2>();
+    const Eigen::Vector2d expected = R * out;
+    all.y.segment<2>(row) = patch.q - expected;
+    all.y[row + 2] = direction_difference(patch.psi, at[place + 2] - theta, one.directed);
+    all.H.block<2, 2>(row, 0) = -R;
+    all.H.block<2, 1>(row, 2) = Eigen::Vector2d(expected.y(), -expected.x());
+    all.H(row + 2, 2) = -1.0;
+    all.H.block<3, 3>(row, 3) = -patch.derrors;
+    all.H.block<2, 2>(row, place) = R;
+    all.H(row + 2, place + 2) = 1.0;
+    all.R.block<3, 3>(row, row) = patch.covariance;
+    row += 3;
+  }
+  // Linearised at another state than the mean.
+  Eigen::VectorXd off = at - x_;
+  off[2] = wrap_angle(off[2]);
+  all.y += all.H * off;
+  all.S = all.H * P_ * all.H.transpose() + all.R;
+  return all;
+}
+
+std::vector<CeilingFilter::Seen> CeilingFilter::gated(const std::vector<Seen>& seen,
+                                                      const Linearised& all) const {
+  std::vector<Seen> passed;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const auto row = 3 * static_cast<Eigen::Index>(i);
+    const Eigen::Vector3d y = all.y.segment<3>(row);
+    const Eigen::Matrix3d S = all.S.block<3, 3>(row, row);
+    if (y.dot(S.ldlt().solve(y)) <= params_.gate) passed.push_back(seen[i]);
+  }
+  return passed;
+}
+
+/// Bayes' rule over the shifts by whole cells: each was where the mean is, some cells aside, and
+/// the fix is as many cells aside again.
+void CeilingFilter::weigh_shifts(const Linearised& all, const std::vector<Seen>& seen,
+                                 const Pose2& at) {
+  const int reach =
+      std::clamp(static_cast<int>(std::ceil(5.0 * belief_.position_sigma() / grid_.pitch_m)), 1,
+                 kFarthestShift);
+  const Eigen::LDLT<Eigen::MatrixXd> S(all.S);
+  const Eigen::Matrix2d R = world_to_robot(at.theta);
+  Shifts weighed;
+  std::map<CeilingCell, double> moved;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::int64_t i = -reach; i <= reach; ++i) {
+    for (std::int64_t j = -reach; j <= reach; ++j) {
+      const Eigen::Vector2d aside = R * cell_centre(grid_, {i, j});
+      Eigen::VectorXd y = all.y;
+      for (Eigen::Index row = 0; row < y.size(); row += 3) y.segment<2>(row) -= aside;
+      const double square = y.dot(S.solve(y));
+      moved[{i, j}] = square;
+      least = std::min(least, square);
+    }
+  }
+  for (const auto& [from, weight] : shifts_) {
+    for (const auto& [by, square] : moved) {
+      const CeilingCell to{from.i + by.i, from.j + by.j};
+      weighed[to] += weight * std::exp(-0.5 * (square - least));
+    }
+  }
+  shifts_ = std::move(weighed);
+  judge_presence(seen, at);
+  normalise_shifts();
+}
+
+/// Patches where a shift has none, and none where it has one. Each cell is judged once while it is
+/// in view: a patch that fell off is missing in every frame for one and the same reason.
+void CeilingFilter::judge_presence(const std::vector<Seen>& seen, const Pose2& at) {
+  if (!grid_.extent) return;
+  std::set<CeilingCell> present;
+  for (const Seen& one : seen) present.insert(one.cell);
+  std::set<CeilingCell> judged;
+  const CeilingCell middle = nearest_cell(grid_, at.position());
+  const int reach = static_cast<int>(std::ceil(2.0 * camera_.rise_m() / grid_.pitch_m));
+  for (std::int64_t i = middle.i - reach; i <= middle.i + reach; ++i) {
+    for (std::int64_t j = middle.j - reach; j <= middle.j + reach; ++j) {
+      const CeilingCell cell{i, j};
+      const bool there = present.count(cell) > 0;
+      if (!there && !in_sight(cell, at, kPlain_px)) continue;
+      judged.insert(cell);
+      if (judged_.count(cell) > 0) continue;
+      for (auto& [shift, weight] : shifts_) {
+        const bool has = has_patch(grid_, {i + shift.i, j + shift.j});
+        if (there && !has) weight *= params_.spurious;
+        if (!there && has) weight *= params_.missing;
+      }
+    }
+  }
+  judged_ = std::move(judged);
+}
+
+void CeilingFilter::normalise_shifts() {
+  double sum = 0.0;
+  for (const auto& [shift, weight] : shifts_) sum += weight;
+  Shifts kept;
+  for (const auto& [shift, weight] : shifts_)
+    if (weight > kNegligible * sum) kept[shift] = weight / sum;
+  shifts_ = std::move(kept);
+}
+
+/// Patches contradict the prediction again and again: it may be anywhere in its cell and the next.
+void CeilingFilter::doubt() {
+  const double sigma = 0.5 * grid_.pitch_m;
+  P_.topRows<3>().setZero();
+  P_.leftCols<3>().setZero();
+  P_.diagonal().head<3>() << sigma * sigma, sigma * sigma, from_deg(30.0) * from_deg(30.0);
+  gated_ = 0;
+}
+
+void CeilingFilter::shift_by(const CeilingCell& shift) {
+  if (shift == CeilingCell{}) return;
+  x_.head<2>() += cell_centre(grid_, shift);
+  std::map<CeilingCell, Eigen::Index> patches;
+  for (const auto& [cell, place] : patches_) patches[{cell.i + shift.i, cell.j + shift.j}] = place;
+  patches_ = std::move(patches);
+  Shifts shifts;
+  for (const auto& [by, weight] : shifts_) shifts[{by.i - shift.i, by.j - shift.j}] = weight;
+  shifts_ = std::move(shifts);
+  std::set<CeilingCell> judged;
+  for (const CeilingCell& cell : judged_) judged.insert({cell.i + shift.i, cell.j + shift.j});
+  judged_ = std::move(judged);
+}
+
+/// Kalman's; the camera's errors are considered and not updated (Schmidt 1966) where patches may be
+/// those of the frames before, under other cells: to learn from them anew would count them twice.
+Eigen::MatrixXd CeilingFilter::gain(const Linearised& all) const {
+  Eigen::MatrixXd K = P_ * all.H.transpose() *
+                      all.S.ldlt().solve(Eigen::MatrixXd::Identity(all.S.rows(), all.S.cols()));
+  if (cells_unsure_) K.middleRows<3>(3).setZero();
+  return K;
+}
+
+Eigen::VectorXd CeilingFilter::fused_state(const Linearised& all) const {
+  Eigen::VectorXd x = x_ + gain(all) * all.y;
+  x[2] = wrap_angle(x[2]);
+  return x;
+}
+
+/// Where the update ends: linearised there again until it comes to rest (Bell and Cathey 1993).
+Eigen::VectorXd CeilingFilter::converged(const std::vector<Seen>& seen, const Pose2& start) const {
+  Eigen::VectorXd at = state_at(start);
+  for (int i = 0; i < kIterations; ++i) {
+    const Eigen::VectorXd next = fused_state(linearise(seen, at));
+    const double moved = (next - at).head<kCommon>().norm();
+    at = next;
+    if (moved < kAtRest) break;
+  }
+  return at;
+}
+
+void CeilingFilter::fuse(const Linearised& all) {
+  const Eigen::MatrixXd K = gain(all);
+  x_ += K * all.y;
+  x_[2] = wrap_angle(x_[2]);
+  // Joseph's form: the placement errors of a perfect grid have no variance at all.
+  const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(P_.rows(), P_.cols()) - K * all.H;
+  P_ = (left * P_ * left.transpose() + K * all.R * K.transpose()).eval();
+}
+
+CeilingUpdate CeilingFilter::update(const std::vector<PatchImage>& patches) {
+  std::vector<Seen> seen = see(patches);
+  if (seen.empty()) return CeilingUpdate::none_seen;
+  const Pose2 start = point_of_linearisation(seen);
+  seen = associated(seen, start);
+  hold(seen, start);
+  const std::vector<Seen> passed = gated(seen, linearise(seen, state_at(start)));
+  if (passed.empty()) {
+    if (++gated_ >= params_.max_gated) doubt();
+    refresh_belief();
+    return CeilingUpdate::gated;
+  }
+  gated_ = 0;
+  const Eigen::VectorXd at = converged(passed, start);
+  const Linearised all = linearise(passed, at);
+  weigh_shifts(all, seen, Pose2::from_vector(at.head<3>()));
+  fuse(all);
+  unknown_s_ = 0.0;
+  const auto best =
+      std::max_element(shifts_.begin(), shifts_.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  shift_by(best->first);
+  refresh_belief();
+  return CeilingUpdate::fused;
+}
+
+void CeilingFilter::relinearise(const Pose2& pose, const CeilingCameraErrors& errors,
+                                const std::map<CeilingCell, Eigen::Vector3d>& placement) {
+  x_.head<3>() = pose.vector();
+  x_.segment<3>(3) = errors.vector();
+  for (const auto& [cell, place] : patches_)
+    if (const auto found = placement.find(cell); found != placement.end())
+      x_.segment<3>(place) = found->second;
+  refresh_belief();
+}
+
+void CeilingFilter::refresh_belief() {
+  belief_.stamp = stamp_;
+  belief_.pose = pose();
+  belief_.covariance = P_.topLeftCorner<3, 3>();
+  belief_.hypotheses.clear();
+  const double best = shifts_[CeilingCell{}];
+  belief_.status = best < params_.sure || open() ? BeliefStatus::ambiguous : BeliefStatus::tracking;
+  belief_.lost_probability = 1.0 - best;
+  if (belief_.status == BeliefStatus::tracking) return;
+  for (const auto& [shift, weight] : shifts_) {
+    const Eigen::Vector2d p = belief_.pose.position() + cell_centre(grid_, shift);
+    belief_.hypotheses.push_back({{p.x(), p.y(), belief_.pose.theta}, belief_.covariance, weight});
+  }
+}
+
+}  // namespace vigia::localization

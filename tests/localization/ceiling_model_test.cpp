@@ -1,0 +1,243 @@
+#include "vigia/localization/ceiling_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include "vigia/core/angle.hpp"
+#include "vigia/localization/ceiling_filter.hpp"
+#include "vigia/localization/ceiling_published.hpp"
+
+namespace vigia::localization {
+namespace {
+
+CeilingCamera up_camera() {
+  CeilingCamera camera;
+  Intrinsics pinhole;
+  pinhole.px = pinhole.py = 554.26;
+  camera.model = pinhole;
+  camera.rMc.translation() = Eigen::Vector3d(0.1, -0.05, 0.5);
+  return camera;
+}
+
+/// The image of a patch that hangs at @p patch, as a camera with these errors sees it.
+PatchImage image_of(const CeilingCamera& known, const CeilingCameraErrors& errors,
+                    const Pose2& robot, const Pose2& patch) {
+  const CeilingCamera camera = corrected(known, errors);
+  const Eigen::Isometry3d cMw = (to_isometry(robot) * camera.rMc).inverse();
+  const auto at = [&](double forward) {
+    const Pose2 p = compose(patch, {forward, 0.0, 0.0});
+    return *project(camera.model, cMw * Eigen::Vector3d(p.x, p.y, camera.ceiling_m));
+  };
+  PatchImage image;
+  image.uv = at(0.0);
+  const Eigen::Vector2d along = at(1e-4) - at(-1e-4);
+  image.angle = std::atan2(along.y(), along.x());
+  image.covariance = Eigen::Vector3d(1e-4, 1e-4, 1e-6).asDiagonal();
+  image.forward_log_odds = 100.0;
+  return image;
+}
+
+std::vector<PatchImage> images_about(const CeilingCamera& camera, const CeilingCameraErrors& errors,
+                                     const Pose2& robot, const CeilingGrid& grid = {}) {
+  std::vector<PatchImage> images;
+  const CeilingCell middle = nearest_cell({}, robot.position());
+  for (std::int64_t i = middle.i - 1; i <= middle.i + 1; ++i)
+    for (std::int64_t j = middle.j - 1; j <= middle.j + 1; ++j) {
+      if (!has_patch(grid, {i, j})) continue;
+      const Eigen::Vector2d p = cell_centre({}, {i, j});
+      const PatchImage image = image_of(camera, errors, robot, {p.x(), p.y(), 0.0});
+      if (in_image(camera.model, image.uv)) images.push_back(image);
+    }
+  return images;
+}
+
+Prior near(const Pose2& pose, double sigma_m, double sigma_rad) {
+  return {
+      pose,
+      Eigen::Vector3d(sigma_m * sigma_m, sigma_m * sigma_m, sigma_rad * sigma_rad).asDiagonal()};
+}
+
+TEST(CeilingModel, PutsAPatchWhereItHangs) {
+  const Pose2 robot{3.2, -1.1, 0.7};
+  const CeilingCameraErrors errors{0.02, -0.01, 0.03};
+  const PatchImage image = image_of(up_camera(), errors, robot, {3.0, -1.0, 0.1});
+  const PatchOnCeiling seen = *on_ceiling(up_camera(), image, errors);
+  const Pose2 patch = compose(inverse(robot), {3.0, -1.0, 0.1});
+  EXPECT_LT((seen.q - patch.position()).norm(), 1e-9);
+  EXPECT_NEAR(wrap_angle(seen.psi - patch.theta), 0.0, 1e-7);
+}
+
+TEST(CeilingModel, DerivativesByTheCamerasErrorsAreThoseOfFiniteDifferences) {
+  const PatchImage image = image_of(up_camera(), {}, {0.3, 0.4, 1.2}, {0.0, 1.0, 0.0});
+  const PatchOnCeiling seen = *on_ceiling(up_camera(), image);
+  constexpr double kStep = 1e-5;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Vector3d step = kStep * Eigen::Vector3d::Unit(i);
+    const auto after = *on_ceiling(up_camera(), image, CeilingCameraErrors::from_vector(step));
+    const auto before = *on_ceiling(up_camera(), image, CeilingCameraErrors::from_vector(-step));
+    const Eigen::Vector2d dq = (after.q - before.q) / (2.0 * kStep);
+    EXPECT_LT((dq - seen.derrors.block<2, 1>(0, i)).norm(), 1e-6) << i;
+    EXPECT_NEAR(wrap_angle(after.psi - before.psi) / (2.0 * kStep), seen.derrors(2, i), 1e-6) << i;
+  }
+}
+
+TEST(CeilingModel, CovarianceIsThatOfThePixelsPropagated) {
+  const PatchImage image = image_of(up_camera(), {}, {0.3, 0.4, 1.2}, {0.0, 1.0, 0.0});
+  const PatchOnCeiling seen = *on_ceiling(up_camera(), image);
+  Eigen::Matrix3d J;
+  constexpr double kStep = 1e-4;
+  for (int i = 0; i < 3; ++i) {
+    PatchImage after = image;
+    PatchImage before = image;
+    (i < 2 ? after.uv[i] : after.angle) += kStep;
+    (i < 2 ? before.uv[i] : before.angle) -= kStep;
+    const auto to = *on_ceiling(up_camera(), after);
+    const auto from = *on_ceiling(up_camera(), before);
+    J.block<2, 1>(0, i) = (to.q - from.q) / (2.0 * kStep);
+    J(2, i) = wrap_angle(to.psi - from.psi) / (2.0 * kStep);
+  }
+  const Eigen::Matrix3d expected = J * image.covariance * J.transpose();
+  EXPECT_LT((seen.covariance - expected).norm(), 1e-4 * expected.norm());
+}
+
+TEST(CeilingPublished, FollowsAnIdealDriveAndFailsWhenItMovesMoreThanHalfAPitchUnseen) {
+  for (const double step : {0.4, 0.6}) {
+    CeilingPublished published(up_camera(), {});
+    published.reset({0.0, 0.0, 0.3});
+    double worst = 0.0;
+    for (int i = 1; i <= 10; ++i) {
+      const Pose2 robot{i * step, 0.0, 0.3};
+      published.update(images_about(up_camera(), {}, robot));
+      worst = std::max(worst, (published.pose().position() - robot.position()).norm());
+    }
+    if (step < 0.5)
+      EXPECT_LT(worst, 1e-6);
+    else
+      EXPECT_GT(worst, 0.9);
+  }
+}
+
+TEST(CeilingFilter, FindsTiltAndHeightFromThePatchesThatItSees) {
+  const CeilingCameraErrors errors{from_deg(0.8), from_deg(-0.5), 0.02};
+  CeilingFilterParams params;
+  params.tilt_sigma = from_deg(1.0);
+  params.height_sigma = 0.02;
+  CeilingFilter filter(up_camera(), {}, params);
+  const Pose2 start{0.2, 0.1, 0.4};
+  filter.reset({}, near(start, 0.05, 0.05));
+  Pose2 robot = start;
+  for (int i = 1; i <= 20; ++i) {
+    const Stamp now = Stamp::from_seconds(0.04 * i);
+    const OdometryIncrement u{filter.belief().stamp, now, 0.01, 0.02, 0.01};
+    robot = move(robot, u);
+    filter.predict(u);
+    ASSERT_EQ(filter.update(images_about(up_camera(), errors, robot)), CeilingUpdate::fused);
+  }
+  EXPECT_LT((filter.belief().pose.position() - robot.position()).norm(), 5e-4);
+  EXPECT_NEAR(filter.camera_errors().tilt_x, errors.tilt_x, 2e-4);
+  EXPECT_NEAR(filter.camera_errors().tilt_y, errors.tilt_y, 2e-4);
+  EXPECT_NEAR(filter.camera_errors().log_height, errors.log_height, 2e-4);
+  EXPECT_EQ(filter.belief().status, BeliefStatus::tracking);
+}
+
+TEST(CeilingFilter, IsAmbiguousWithTheTruthAmongItsHypothesesAfterDrivingUnseenForHalfAPitch) {
+  CeilingFilter filter(up_camera(), {}, {});
+  filter.reset({}, near({0.0, 0.0, 0.0}, 0.01, 0.01));
+  ASSERT_EQ(filter.update(images_about(up_camera(), {}, {0.0, 0.0, 0.0})), CeilingUpdate::fused);
+  ASSERT_EQ(filter.belief().status, BeliefStatus::tracking);
+  filter.predict_unknown(Stamp::from_seconds(2.5));
+  const Pose2 robot{0.6, 0.0, 0.0};
+  ASSERT_EQ(filter.update(images_about(up_camera(), {}, robot)), CeilingUpdate::fused);
+  EXPECT_EQ(filter.belief().status, BeliefStatus::ambiguous);
+  const auto& all = filter.belief().hypotheses;
+  EXPECT_TRUE(std::any_of(all.begin(), all.end(), [&](const PoseHypothesis& one) {
+    return (one.pose.position() - robot.position()).norm() < 0.01 && one.weight > 0.1;
+  }));
+}
+
+/// Weight of the hypotheses that lie in another column than @p truth.
+double weight_in_other_columns(const Belief& belief, const Pose2& truth) {
+  double weight = 0.0;
+  for (const PoseHypothesis& one : belief.hypotheses)
+    if (std::abs(one.pose.x - truth.x) > 0.5) weight += one.weight;
+  return weight;
+}
+
+TEST(CeilingFilter, PatchesBeyondTheGridsEdgeSettleWhichCellItIs) {
+  // The last column is x = 1. Whoever were a cell to the right would see patches at x = 2.
+  CeilingGrid grid;
+  grid.extent = CeilingGrid::Extent{{-20.0, -20.0}, {1.0, 20.0}};
+  for (const bool edge : {false, true}) {
+    CeilingFilter filter(up_camera(), edge ? grid : CeilingGrid{}, {});
+    filter.reset({}, near({0.0, 0.0, 0.0}, 0.01, 0.01));
+    filter.update(images_about(up_camera(), {}, {0.0, 0.0, 0.0}, grid));
+    filter.predict_unknown(Stamp::from_seconds(2.5));
+    const Pose2 robot{0.0, 0.0, 0.0};
+    ASSERT_EQ(filter.update(images_about(up_camera(), {}, robot, grid)), CeilingUpdate::fused);
+    double right = 0.0;
+    for (const PoseHypothesis& one : filter.belief().hypotheses)
+      if (one.pose.x > 0.5) right += one.weight;
+    if (edge)
+      EXPECT_LT(right, 1e-3);
+    else
+      EXPECT_GT(right, 0.01);
+  }
+}
+
+TEST(CeilingFilter, ColumnsThatAreMissingAtTheGridsEdgeSettleWhichCellItIs) {
+  CeilingGrid grid;
+  grid.extent = CeilingGrid::Extent{{-20.0, -20.0}, {1.0, 20.0}};
+  CeilingFilter filter(up_camera(), grid, {});
+  const Pose2 start{0.0, 0.0, from_deg(90.0)};
+  filter.reset({}, near(start, 0.01, 0.01));
+  filter.update(images_about(up_camera(), {}, start, grid));
+  filter.predict_unknown(Stamp::from_seconds(4.0));
+  // The camera shows x from 0.4 to 2.3: of two columns in sight the right one does not exist.
+  const Pose2 robot{1.3, 0.0, from_deg(90.0)};
+  ASSERT_EQ(filter.update(images_about(up_camera(), {}, robot, grid)), CeilingUpdate::fused);
+  EXPECT_NEAR(filter.belief().pose.x, robot.x, 1e-3);
+  EXPECT_LT(weight_in_other_columns(filter.belief(), robot), 0.05);
+}
+
+TEST(CeilingFilter, AFallenPatchIsNoEvidenceAgainInEveryFrame) {
+  CeilingGrid grid;
+  grid.extent = CeilingGrid::Extent{{-20.0, -20.0}, {1.0, 20.0}};
+  CeilingFilter filter(up_camera(), grid, {});
+  const Pose2 robot{-0.4, 0.0, 0.0};
+  filter.reset({}, near({0.0, 0.0, 0.0}, 0.01, 0.01));
+  filter.predict_unknown(Stamp::from_seconds(4.0));
+  std::vector<PatchImage> images = images_about(up_camera(), {}, robot, grid);
+  images.pop_back();
+  filter.update(images);
+  const double once = weight_in_other_columns(filter.belief(), robot);
+  for (int i = 0; i < 50; ++i) {
+    filter.predict(
+        {filter.belief().stamp, Stamp::from_seconds(4.0 + 0.04 * (i + 1)), 0.0, 0.0, 0.0});
+    filter.update(images);
+  }
+  EXPECT_NEAR(weight_in_other_columns(filter.belief(), robot), once, 0.1);
+}
+
+TEST(CeilingFilter, KeepsAFalsePatchOut) {
+  CeilingFilter filter(up_camera(), {}, {});
+  const Pose2 robot{0.3, 0.2, 0.5};
+  filter.reset({}, near(robot, 0.02, 0.02));
+  std::vector<PatchImage> images = images_about(up_camera(), {}, robot);
+  images.push_back(image_of(up_camera(), {}, robot, {0.25, 0.3, 1.0}));
+  ASSERT_EQ(filter.update(images), CeilingUpdate::fused);
+  EXPECT_LT((filter.belief().pose.position() - robot.position()).norm(), 1e-3);
+}
+
+TEST(CeilingFlow, TheRobotsMotionIsTakenFromTheCamerasAboutIt) {
+  const CeilingCamera camera = up_camera();
+  const Pose2 motion{0.05, -0.02, 0.1};
+  // Where the camera goes when the robot does so, in ceiling distances.
+  const Eigen::Vector2d c = camera.rMc.translation().head<2>();
+  ImageShift shift;
+  shift.turn = motion.theta;
+  shift.shift = (motion.position() + Eigen::Rotation2Dd(motion.theta) * c - c) / camera.rise_m();
+  const Pose2 found = robot_motion(camera, shift);
+  EXPECT_LT(difference(found, motion).norm(), 1e-12);
+}
+
+}  // namespace
+}  // namespace vigia::localization

@@ -1,0 +1,125 @@
+#include "vigia/tracking/patch_finder.hpp"
+
+#include "tracking/ceiling_scene.hpp"
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include "vigia/core/random.hpp"
+
+namespace vigia::tracking {
+namespace {
+
+constexpr int kFrames = 60;
+
+/// What became of the patches of some frames.
+struct PatchTally {
+  int whole = 0;  ///< well inside the frame
+  int missed = 0;
+  int measured = 0;
+  int false_ones = 0;
+  int reversed = 0;
+  int cut = 0;
+  Eigen::Vector3d square = Eigen::Vector3d::Zero();    ///< along, across, angle
+  Eigen::Vector3d variance = Eigen::Vector3d::Zero();  ///< claimed
+  double chi_square = 0.0;                             ///< of whole patches
+  double cut_chi_square = 0.0;
+};
+
+void compare(const CeilingScene& scene, const Pose2& robot, const PatchScan& scan,
+             PatchTally& tally) {
+  std::vector<bool> used(scan.patches.size(), false);
+  const CeilingCell middle = nearest_cell(scene.truth.grid, robot.position());
+  for (std::int64_t i = middle.i - 3; i <= middle.i + 3; ++i) {
+    for (std::int64_t j = middle.j - 3; j <= middle.j + 3; ++j) {
+      const auto patch = sim::true_patch(scene.truth, {i, j});
+      if (!patch) continue;
+      const Eigen::Vector2d uv = scene.image_of(robot, *patch, 0.0);
+      const Eigen::Vector2d along = scene.image_of(robot, *patch, 1e-3) - uv;
+      const double angle = std::atan2(along.y(), along.x());
+      const bool whole = in_image(scene.camera, uv, 14.0);
+      tally.whole += whole ? 1 : 0;
+      bool found = false;
+      for (std::size_t k = 0; k < scan.patches.size(); ++k) {
+        const PatchImage& seen = scan.patches[k];
+        if ((seen.uv - uv).norm() > 5.0) continue;
+        found = used[k] = true;
+        Eigen::Vector3d error;
+        error << seen.uv - uv, wrap_angle(seen.angle - angle);
+        if (std::abs(error.z()) > 0.5 * kPi) {
+          error.z() = wrap_angle(error.z() + kPi);
+          tally.reversed += seen.cut ? 0 : 1;
+        }
+        const double chi = error.dot(seen.covariance.ldlt().solve(error));
+        if (seen.cut) {
+          ++tally.cut;
+          tally.cut_chi_square += chi;
+          continue;
+        }
+        ++tally.measured;
+        tally.chi_square += chi;
+        const Eigen::Matrix2d R = Eigen::Rotation2Dd(-angle).toRotationMatrix();
+        const Eigen::Vector2d local = R * error.head<2>();
+        tally.square += Eigen::Vector3d(local.x(), local.y(), error.z()).cwiseAbs2();
+        const Eigen::Matrix2d claimed = R * seen.covariance.topLeftCorner<2, 2>() * R.transpose();
+        tally.variance += Eigen::Vector3d(claimed(0, 0), claimed(1, 1), seen.covariance(2, 2));
+      }
+      tally.missed += whole && !found ? 1 : 0;
+    }
+  }
+  for (const bool known : used) tally.false_ones += known ? 0 : 1;
+}
+
+PatchTally tally_frames(const CeilingScene& scene) {
+  PatchFinderParams params;
+  params.length_px = scene.truth.grid.length_m / 2.2 * scene.camera.px;
+  params.width_px = scene.truth.grid.width_m / 2.2 * scene.camera.px;
+  params.polarity = scene.truth.grid.polarity;
+  const PatchFinder finder(params);
+  RandomStream random(1, "poses");
+  PatchTally tally;
+  for (int k = 0; k < kFrames; ++k) {
+    const Pose2 robot{random.uniform(-40, 40), random.uniform(-40, 40), random.uniform(-kPi, kPi)};
+    compare(scene, robot, finder.find(*scene.expose(robot, k)), tally);
+  }
+  return tally;
+}
+
+TEST(PatchFinder, MeasuresEveryPatchToTheBoundThatItsCovarianceStates) {
+  for (const bool polarity : {true, false}) {
+    sim::CeilingTruth truth;
+    truth.grid.polarity = polarity;
+    const PatchTally tally = tally_frames(CeilingScene(truth, 0.0));
+    ASSERT_GT(tally.measured, 200);
+    EXPECT_EQ(tally.missed, 0);
+    EXPECT_EQ(tally.false_ones, 0);
+    EXPECT_EQ(polarity ? tally.reversed : 0, 0);
+    // Four standard errors of a mean square of n normal numbers.
+    const double slack = 4.0 * std::sqrt(2.0 / tally.measured);
+    for (int i = 0; i < 3; ++i)
+      EXPECT_NEAR(tally.square[i] / tally.variance[i], 1.0, slack) << polarity << i;
+    // The bound of σ 4, contrast 135, blur 0.7 px.
+    EXPECT_LT(std::sqrt(tally.variance[0] / tally.measured), 0.016);
+    EXPECT_LT(std::sqrt(tally.variance[1] / tally.measured), 0.009);
+    EXPECT_LT(std::sqrt(tally.variance[2] / tally.measured), 0.0016);
+  }
+}
+
+TEST(PatchFinder, SaysOfCutPatchesWhatTheyStillTell) {
+  const PatchTally tally = tally_frames(CeilingScene({}, 0.0));
+  ASSERT_GT(tally.cut, 10);
+  EXPECT_LT(tally.cut_chi_square / (3 * tally.cut), 1.0 + 4.0 * std::sqrt(2.0 / (3 * tally.cut)));
+}
+
+TEST(PatchFinder, FindsPatchesBesideLampsAndJoints) {
+  sim::CeilingTruth truth;
+  truth.lamp_pitch_m = 3.0;
+  const PatchTally tally = tally_frames(CeilingScene(truth, 1.0));
+  EXPECT_LE(tally.missed, 2);
+  EXPECT_EQ(tally.false_ones, 0);
+  EXPECT_EQ(tally.reversed, 0);
+  EXPECT_LT(tally.chi_square / (3 * tally.measured), 2.0);
+}
+
+}  // namespace
+}  // namespace vigia::tracking

@@ -1,0 +1,312 @@
+#include "vigia/tracking/patch_finder.hpp"
+
+#include "patch_fit.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include <Eigen/Eigenvalues>
+
+#include "vigia/core/angle.hpp"
+
+namespace vigia::tracking {
+namespace {
+
+using imaging::Window;
+
+/// A dark stretch of a row between two edges.
+struct DarkChord {
+  int v = 0;
+  double u = 0.0;  ///< middle
+  double patch = 0.0;
+  double ground = 0.0;
+};
+
+/// The connected dark region about a chord.
+struct DarkSpot {
+  double area = 0.0;
+  double darkest = 0.0;  ///< mean level of its darker half
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+  bool at_border = false;  ///< reaches the image's border
+  bool open = false;       ///< reaches the window's edge elsewhere
+};
+
+/// Chords of one row: a falling and the next rising edge, no farther apart than a patch is long.
+class ChordFinder {
+ public:
+  ChordFinder(const PatchFinderParams& params, int width)
+      : params_(params), slope_(static_cast<std::size_t>(width)) {}
+
+  void find(const unsigned char* row, int width, int v, std::vector<DarkChord>& chords) {
+    // Three pixels' mean less that four pixels before it, three times over.
+    for (int u = 3; u < width - 3; ++u)
+      slope_[static_cast<std::size_t>(u)] =
+          row[u + 1] + row[u + 2] + row[u + 3] - row[u - 1] - row[u - 2] - row[u - 3];
+    const int threshold = static_cast<int>(1.5 * params_.min_contrast);
+    const int longest = static_cast<int>(1.3 * params_.length_px) + 3;
+    int fell = -1;
+    for (int u = 4; u < width - 4; ++u) {
+      const int d = slope_[static_cast<std::size_t>(u)];
+      const int before = slope_[static_cast<std::size_t>(u) - 1];
+      const int after = slope_[static_cast<std::size_t>(u) + 1];
+      if (d <= -threshold && d <= before && d < after) fell = u;
+      const bool rises = d >= threshold && d >= before && d > after;
+      if (!rises || fell < 0) continue;
+      if (u - fell <= longest && u - fell >= 3) add(row, width, v, fell, u, chords);
+      fell = -1;
+    }
+    add_at_borders(row, width, v, chords);
+  }
+
+ private:
+  void add(const unsigned char* row, int width, int v, int from, int to,
+           std::vector<DarkChord>& chords) const {
+    DarkChord chord;
+    chord.v = v;
+    chord.u = 0.5 * (from + to);
+    double sum = 0.0;
+    for (int u = from + 1; u < to; ++u) sum += row[u];
+    chord.patch = sum / (to - from - 1);
+    chord.ground = std::min(row[std::max(0, from - 3)], row[std::min(width - 1, to + 3)]);
+    if (chord.ground - chord.patch >= 0.7 * params_.min_contrast) chords.push_back(chord);
+  }
+  /// Patches that the image's left or right border cuts have one edge only.
+  void add_at_borders(const unsigned char* row, int width, int v,
+                      std::vector<DarkChord>& chords) const {
+    const int threshold = static_cast<int>(1.5 * params_.min_contrast);
+    const int longest = static_cast<int>(params_.length_px) + 3;
+    for (int u = 4; u < std::min(longest, width - 4); ++u) {
+      if (slope_[static_cast<std::size_t>(u)] <= -threshold) break;
+      if (slope_[static_cast<std::size_t>(u)] < threshold) continue;
+      if (row[0] + params_.min_contrast < row[u + 3])
+        chords.push_back({v, 1.0, static_cast<double>(row[0]), static_cast<double>(row[u + 3])});
+      break;
+    }
+    for (int u = width - 5; u > std::max(width - longest, 4); --u) {
+      if (slope_[static_cast<std::size_t>(u)] >= threshold) break;
+      if (slope_[static_cast<std::size_t>(u)] > -threshold) continue;
+      if (row[width - 1] + params_.min_contrast < row[u - 3])
+        chords.push_back(
+            {v, width - 2.0, static_cast<double>(row[width - 1]), static_cast<double>(row[u - 3])});
+      break;
+    }
+  }
+
+  const PatchFinderParams& params_;
+  std::vector<int> slope_;
+};
+
+PatchWindow read_window(const imaging::Frame& frame, const DarkChord& chord, double reach_px) {
+  const int reach = static_cast<int>(std::ceil(reach_px));
+  PatchWindow window;
+  window.window = intersect(frame.full(), {static_cast<int>(std::lround(chord.u)) - reach,
+                                           chord.v - reach, 2 * reach + 1, 2 * reach + 1});
+  window.grey.resize(static_cast<std::size_t>(window.window.width) *
+                     static_cast<std::size_t>(window.window.height));
+  frame.read_grey(window.window, window.grey.data(), window.window.width);
+  return window;
+}
+
+/// The seed of a fill: the darkest pixel near the chord's middle.
+std::array<int, 2> seed_of(const PatchWindow& window, const DarkChord& chord) {
+  std::array<int, 2> seed{-1, -1};
+  int darkest = 256;
+  for (int u = static_cast<int>(chord.u) - 1; u <= static_cast<int>(chord.u) + 2; ++u) {
+    if (u < window.window.u || u >= window.window.right()) continue;
+    if (window.at(u, chord.v) >= darkest) continue;
+    darkest = window.at(u, chord.v);
+    seed = {u, chord.v};
+  }
+  return seed;
+}
+
+/// Mean of the darker half.
+double dark_level(std::vector<unsigned char>& levels) {
+  const auto half = levels.begin() + static_cast<std::ptrdiff_t>((levels.size() + 1) / 2);
+  std::nth_element(levels.begin(), half - 1, levels.end());
+  double sum = 0.0;
+  for (auto at = levels.begin(); at != half; ++at) sum += *at;
+  return sum / static_cast<double>(half - levels.begin());
+}
+
+DarkSpot fill(const PatchWindow& window, const DarkChord& chord, const Window& frame) {
+  DarkSpot spot;
+  const std::array<int, 2> seed = seed_of(window, chord);
+  const double level = 0.5 * (chord.patch + chord.ground);
+  const Window& w = window.window;
+  std::vector<char> taken(window.grey.size(), 0);
+  std::vector<std::array<int, 2>> open;
+  const auto take = [&](int u, int v) {
+    const auto index = static_cast<std::size_t>((v - w.v) * w.width + (u - w.u));
+    if (taken[index] != 0 || window.grey[index] >= level) return;
+    taken[index] = 1;
+    open.push_back({u, v});
+  };
+  if (seed[0] >= 0) take(seed[0], seed[1]);
+  std::vector<unsigned char> levels;
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  while (!open.empty()) {
+    const auto [u, v] = open.back();
+    open.pop_back();
+    const Eigen::Vector2d p(u, v);
+    spot.area += 1.0;
+    levels.push_back(window.at(u, v));
+    sum += p;
+    squares += p * p.transpose();
+    const bool rim = u == w.u || v == w.v || u == w.right() - 1 || v == w.bottom() - 1;
+    const bool border =
+        u == frame.u || v == frame.v || u == frame.right() - 1 || v == frame.bottom() - 1;
+    spot.at_border = spot.at_border || border;
+    spot.open = spot.open || (rim && !border);
+    if (u > w.u) take(u - 1, v);
+    if (u < w.right() - 1) take(u + 1, v);
+    if (v > w.v) take(u, v - 1);
+    if (v < w.bottom() - 1) take(u, v + 1);
+  }
+  if (spot.area < 1.0) return spot;
+  spot.darkest = dark_level(levels);
+  spot.mean = sum / spot.area;
+  spot.covariance = squares / spot.area - spot.mean * spot.mean.transpose();
+  return spot;
+}
+
+/// The spot at half its own contrast: the chord may have met no more than a corner of it.
+DarkSpot dark_spot(const PatchWindow& window, DarkChord& chord, const Window& frame) {
+  const DarkSpot first = fill(window, chord, frame);
+  if (first.area < 1.0) return first;
+  chord.patch = first.darkest;
+  return fill(window, chord, frame);
+}
+
+/// A patch's area by its length times its width.
+double filled_share(const PatchFinderParams& params) {
+  return params.polarity ? 1.0 - kTongueLength * (1.0 - kTongueWidth) : 1.0;
+}
+
+/// Where a fit may begin: long enough to have a direction.
+std::optional<PatchShape> start_of(const DarkSpot& spot, const DarkChord& chord,
+                                   const PatchFinderParams& params, const Window& frame) {
+  const double whole = params.length_px * params.width_px * filled_share(params);
+  if (spot.open || spot.area > 1.4 * whole) return std::nullopt;
+  if (spot.area < (spot.at_border ? 0.35 : 0.65) * whole) return std::nullopt;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spot.covariance);
+  const double ratio = std::sqrt(axes.eigenvalues()[1] / std::max(axes.eigenvalues()[0], 0.1));
+  if (ratio < (spot.at_border ? 1.3 : 1.8)) return std::nullopt;
+  PatchShape shape;
+  const Eigen::Vector2d along = axes.eigenvectors().col(1);
+  shape.uv = spot.mean;
+  shape.angle = std::atan2(along.y(), along.x());
+  shape.patch = chord.patch;
+  shape.ground = chord.ground;
+  shape.blur = params.blur_px;
+  if (spot.at_border) {
+    // What is missing lies towards the border.
+    const double seen = std::sqrt(12.0 * axes.eigenvalues()[1]);
+    const double missing = std::max(0.0, params.length_px - seen);
+    const Eigen::Vector2d middle(0.5 * (frame.width - 1), 0.5 * (frame.height - 1));
+    const double out = along.dot(spot.mean - middle) > 0.0 ? 0.5 : -0.5;
+    shape.uv += out * missing * along;
+  }
+  return shape;
+}
+
+/// The better of the two directions, and by how much.
+struct DirectedFit {
+  PatchFit fit;
+  double forward_log_odds = 0.0;
+};
+std::optional<DirectedFit> fit_directed(const PatchWindow& window, PatchShape start,
+                                        const PatchFinderParams& params) {
+  const auto one = fit_patch(window, start, params);
+  if (!params.polarity) return one ? std::optional<DirectedFit>({*one, 0.0}) : std::nullopt;
+  start.angle = wrap_angle(start.angle + kPi);
+  const auto other = fit_patch(window, start, params);
+  if (!one && !other) return std::nullopt;
+  if (!one || !other) return DirectedFit{one ? *one : *other, 30.0};
+  const PatchFit& best = one->square <= other->square ? *one : *other;
+  const double less = std::abs(one->square - other->square);
+  return DirectedFit{best, std::min(0.5 * less / (best.noise * best.noise), 1e3)};
+}
+
+bool is_patch(const PatchFit& fit, const PatchFinderParams& params) {
+  const double contrast = fit.shape.ground - fit.shape.patch;
+  return contrast >= params.min_contrast &&
+         std::abs(fit.shape.log_scale) <= params.max_scale_error &&
+         fit.noise <= std::max(params.max_misfit * contrast, params.max_noise) &&
+         fit.covariance.allFinite() && fit.covariance.topLeftCorner<2, 2>().trace() < 4.0;
+}
+
+/// Whether the patch reaches beyond what the camera shows.
+bool is_cut(const PatchShape& shape, const PatchFinderParams& params, const Window& frame) {
+  const Eigen::Vector2d along =
+      0.5 * params.length_px * Eigen::Vector2d(std::cos(shape.angle), std::sin(shape.angle));
+  const Eigen::Vector2d across =
+      0.5 * params.width_px * Eigen::Vector2d(-std::sin(shape.angle), std::cos(shape.angle));
+  for (const double a : {-1.0, 1.0}) {
+    for (const double b : {-1.0, 1.0}) {
+      const Eigen::Vector2d corner = shape.uv + a * along + b * across;
+      if (corner.x() < -0.5 || corner.y() < -0.5 || corner.x() > frame.width - 0.5 ||
+          corner.y() > frame.height - 0.5)
+        return true;
+    }
+  }
+  return false;
+}
+
+/// Whether a chord belongs to a spot that was looked at already.
+bool looked_at(const std::vector<Eigen::Vector3d>& spots, const DarkChord& chord) {
+  return std::any_of(spots.begin(), spots.end(), [&](const Eigen::Vector3d& spot) {
+    return (Eigen::Vector2d(chord.u, chord.v) - spot.head<2>()).norm() < spot.z();
+  });
+}
+
+std::vector<DarkChord> scan_rows(const imaging::Frame& frame, const PatchFinderParams& params) {
+  const int step = std::max(1, static_cast<int>(0.7 * params.width_px));
+  std::vector<imaging::Run> runs;
+  for (int v = step / 2; v < frame.height(); v += step) runs.push_back({v, 0, frame.width()});
+  std::vector<unsigned char> grey(imaging::pixels_in(runs));
+  frame.read_grey_runs(runs, grey.data());
+  ChordFinder finder(params, frame.width());
+  std::vector<DarkChord> chords;
+  const unsigned char* row = grey.data();
+  for (const imaging::Run& run : runs) {
+    finder.find(row, frame.width(), run.v, chords);
+    row += frame.width();
+  }
+  return chords;
+}
+
+}  // namespace
+
+PatchScan PatchFinder::find(const imaging::Frame& frame) const {
+  PatchScan scan;
+  double square = 0.0;
+  std::vector<Eigen::Vector3d> spots;  // middle, radius
+  std::vector<DarkChord> chords = scan_rows(frame, params_);
+  for (DarkChord& chord : chords) {
+    if (looked_at(spots, chord)) continue;
+    const PatchWindow window = read_window(frame, chord, 1.15 * params_.length_px + 4.0);
+    const DarkSpot spot = dark_spot(window, chord, frame.full());
+    if (spot.area < 0.25 * params_.length_px * params_.width_px) continue;
+    spots.emplace_back(spot.mean.x(), spot.mean.y(), 0.6 * params_.length_px);
+    const auto start = start_of(spot, chord, params_, frame.full());
+    const auto directed = start ? fit_directed(window, *start, params_) : std::nullopt;
+    if (!directed || !is_patch(directed->fit, params_)) {
+      ++scan.rejected;
+      continue;
+    }
+    const PatchFit& fit = directed->fit;
+    scan.patches.push_back({fit.shape.uv, fit.shape.angle, fit.covariance,
+                            directed->forward_log_odds, is_cut(fit.shape, params_, frame.full())});
+    square += fit.noise * fit.noise;
+  }
+  if (!scan.patches.empty())
+    scan.noise = std::sqrt(square / static_cast<double>(scan.patches.size()));
+  return scan;
+}
+
+}  // namespace vigia::tracking
