@@ -36,6 +36,8 @@ EstimatorScorer::EstimatorScorer(EstimatorSetup setup)
   if (!setup_.ceiling) return;
   localization::CeilingFilterParams params;
   params.odometry = setup_.odometry;
+  // Nothing is refused: of a patch its covariance counts, not where it is.
+  params.gate = 1e12;
   ceiling_.emplace(setup_.ceiling->camera, setup_.ceiling->grid, params);
   ceiling_->reset({}, {{}, setup_.prior_covariance});
 }

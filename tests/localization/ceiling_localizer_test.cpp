@@ -7,14 +7,14 @@
 namespace vigia::localization {
 namespace {
 
-const Pose2 kStart{0.2, 0.1, 0.3};
-constexpr double kTick_s = 0.04;
+const Pose2 kUnderPatches{0.2, 0.1, 0.3};
+constexpr double kCeilingTick_s = 0.04;
 
 class CeilingLocalizerTest : public ::testing::Test {
  protected:
   CeilingLocalizerTest() {
     for (CeilingLocalizer* localizer : {&prompt_, &late_})
-      localizer->reset({}, Prior{kStart, Eigen::Vector3d(4e-4, 4e-4, 4e-4).asDiagonal()});
+      localizer->reset({}, Prior{kUnderPatches, Eigen::Vector3d(4e-4, 4e-4, 4e-4).asDiagonal()});
   }
 
   /// What the camera shows from @p robot of the patches about the origin.
@@ -36,8 +36,8 @@ class CeilingLocalizerTest : public ::testing::Test {
     return seen;
   }
   static OdometryIncrement step(int tick) {
-    return {Stamp::from_seconds(kTick_s * (tick - 1)), Stamp::from_seconds(kTick_s * tick), 0.01,
-            0.02, 0.0};
+    return {Stamp::from_seconds(kCeilingTick_s * (tick - 1)),
+            Stamp::from_seconds(kCeilingTick_s * tick), 0.01, 0.02, 0.0};
   }
 
   static CeilingCamera camera() {
@@ -55,7 +55,7 @@ class CeilingLocalizerTest : public ::testing::Test {
 };
 
 TEST_F(CeilingLocalizerTest, AFrameThatComesLateIsFusedWhereItWasExposed) {
-  Pose2 robot = kStart;
+  Pose2 robot = kUnderPatches;
   std::optional<Observation> waiting;
   for (int tick = 1; tick <= 5; ++tick) {
     robot = move(robot, step(tick));
@@ -73,7 +73,7 @@ TEST_F(CeilingLocalizerTest, AFrameThatComesLateIsFusedWhereItWasExposed) {
 
 TEST_F(CeilingLocalizerTest, AFrameFromBeforeItsMemoryIsRefused) {
   for (int tick = 1; tick <= 40; ++tick) late_.predict(step(tick));
-  EXPECT_EQ(late_.update(seen_from(kStart, Stamp::from_seconds(0.1))).status,
+  EXPECT_EQ(late_.update(seen_from(kUnderPatches, Stamp::from_seconds(0.1))).status,
             UpdateStatus::too_late);
 }
 
@@ -81,9 +81,9 @@ TEST_F(CeilingLocalizerTest, OnceLostItStaysLostUntilItIsToldWhereItIs) {
   prompt_.predict(step(1));
   prompt_.lose();
   EXPECT_EQ(prompt_.belief().status, BeliefStatus::lost);
-  EXPECT_EQ(prompt_.update(seen_from(kStart, step(1).to)).status, UpdateStatus::no_prior);
-  prompt_.reset(step(1).to, Prior{kStart, Eigen::Vector3d(1e-4, 1e-4, 1e-4).asDiagonal()});
-  EXPECT_EQ(prompt_.update(seen_from(kStart, step(1).to)).status, UpdateStatus::fused);
+  EXPECT_EQ(prompt_.update(seen_from(kUnderPatches, step(1).to)).status, UpdateStatus::no_prior);
+  prompt_.reset(step(1).to, Prior{kUnderPatches, Eigen::Vector3d(1e-4, 1e-4, 1e-4).asDiagonal()});
+  EXPECT_EQ(prompt_.update(seen_from(kUnderPatches, step(1).to)).status, UpdateStatus::fused);
 }
 
 TEST_F(CeilingLocalizerTest, ImagesOfLandmarksAreUnsupported) {
