@@ -28,7 +28,7 @@ set(CPACK_DEBIAN_RUNTIME_DESCRIPTION
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libvigia-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-  "libvisp-dev, libopencv-dev, libeigen3-dev, libyaml-cpp-dev, libompl-dev, libfuzzylite-dev, libapriltag-dev, libcairo2-dev, libspdlog-dev, libfmt-dev, nlohmann-json3-dev, pkg-config")
+  "libvisp-dev, libopencv-dev, libeigen3-dev, libyaml-cpp-dev, libompl-dev, libfuzzylite-dev, libapriltag-dev, libcairo2-dev, libspdlog-dev, libfmt-dev, libsqlite3-dev, nlohmann-json3-dev, pkg-config")
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION
   "Modules and headers of vigia
  Trackers, servos, planners, localizers and the simulator's loop as static

@@ -1,5 +1,6 @@
 #include "campaign_output.hpp"
 #include "campaign_progress.hpp"
+#include "cluster_scripts.hpp"
 #include "commands.hpp"
 
 #include <algorithm>
@@ -13,6 +14,8 @@
 #include <spdlog/spdlog.h>
 
 #include "vigia/core/error.hpp"
+#include "vigia/core/output_file.hpp"
+#include "vigia/core/shell.hpp"
 #include "vigia/evaluation/campaign_shard.hpp"
 #include "vigia/evaluation/text_table.hpp"
 
@@ -30,6 +33,9 @@ struct CampaignOptions {
   int shards = 0;
   int shard = 0;
   int threads = 0;
+  bool slurm = false;
+  bool parallel = false;
+  std::vector<std::string> hosts;
   bool restart = false;
   bool any_version = false;
   bool dry_run = false;
@@ -61,6 +67,22 @@ void print_stale(const fs::path& folder, const evaluation::CampaignPlan& plan) {
   print_unfinished(shard_states(folder, plan, false));
 }
 
+/// Writes the scripts that are asked for, and says how each is started.
+void write_scripts(const CampaignOptions& options, const evaluation::CampaignPlan& plan,
+                   const evaluation::Campaign& campaign) {
+  const fs::path folder = options.folder;
+  const int threads = std::max(1, options.threads);
+  if (options.slurm) {
+    const TrialFigures trial = try_shard(plan, campaign);
+    write_file(folder / "slurm.sh", slurm_script(folder, plan, trial, threads));
+    fmt::print("sbatch {}\n", shell_word((folder / "slurm.sh").string()));
+  }
+  if (!options.parallel && options.hosts.empty()) return;
+  const std::string line = parallel_line(folder, plan, options.hosts, threads);
+  write_file(folder / "parallel.sh", line);
+  fmt::print("{}", line);
+}
+
 int plan_campaign(const CampaignOptions& options) {
   const auto campaign = evaluation::read_campaign(options.campaign, options.overrides);
   const fs::path folder = options.folder;
@@ -72,7 +94,10 @@ int plan_campaign(const CampaignOptions& options) {
   fmt::print("{}: {} arms × {} seeds, {} shards of {} missions\n", campaign.name,
              campaign.arms.size(), campaign.seeds, plan.shards,
              even ? std::to_string(least) : fmt::format("{} or {}", least, least + 1));
-  if (options.dry_run) print_stale(folder, plan);
+  if (options.dry_run)
+    print_stale(folder, plan);
+  else
+    write_scripts(options, plan, campaign);
   return 0;
 }
 
@@ -85,6 +110,16 @@ void add_plan_options(CLI::App& command, CampaignOptions& options) {
   command.add_option("--set", options.overrides, "Override a key of the mission in every arm")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
+  command.add_flag("--slurm", options.slurm,
+                   "Write slurm.sh, an array script with time and memory from a trial");
+  command.add_flag("--parallel", options.parallel,
+                   "Print the line for GNU parallel, and write it as parallel.sh");
+  command
+      .add_option("--ssh", options.hosts, "Hosts for GNU parallel, as its --sshlogin takes them")
+      ->type_name("HOST")
+      ->allow_extra_args(false);
+  command.add_option("-j,--threads", options.threads, "Threads of each shard in those (default 1)")
+      ->check(CLI::Range(1, 1024));
   command.add_flag("--restart", options.restart, "Replace the plan that the folder holds");
   command.add_flag("--dry-run", options.dry_run,
                    "Write nothing; say which shards are stale, and why");

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "vigia/core/output_file.hpp"
+#include "vigia/evaluation/campaign_database.hpp"
 #include "vigia/evaluation/campaign_report.hpp"
 #include "vigia/report/arms_picture.hpp"
 
@@ -39,6 +40,9 @@ report::ArmsPicture picture_of(const evaluation::Campaign& campaign,
 
 void CampaignOutput::add_options(CLI::App& command) {
   command.add_option("--csv", csv, "Write results.csv to this file too");
+  command.add_option("--sqlite", sqlite, "Write the results as this SQLite file");
+  command.add_option("--ompl-log", ompl,
+                     "Write the results as this log, for ompl_benchmark_statistics");
   command.add_flag("--json", json, "Print summary.json on stdout");
 }
 
@@ -55,6 +59,9 @@ int write_campaign(const std::filesystem::path& folder, const evaluation::Campai
   report::draw_arms(picture_of(campaign, statistics), folder / "arms.png");
   write_file(folder / "summary.json", json);
   if (!output.csv.empty()) write_file(output.csv, csv);
+  if (!output.sqlite.empty()) evaluation::write_database(output.sqlite, campaign, scores);
+  if (!output.ompl.empty())
+    write_file(output.ompl, evaluation::ompl_benchmark_log(campaign, scores));
   if (output.json)
     fmt::print("{}", json);
   else

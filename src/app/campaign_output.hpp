@@ -13,7 +13,9 @@ namespace vigia::app {
 
 /// What `evaluate` and `campaign merge` make of a finished campaign beside its folder's files.
 struct CampaignOutput {
-  std::string csv;  ///< empty: no copy
+  std::string csv;     ///< empty: no copy
+  std::string sqlite;  ///< empty: none
+  std::string ompl;    ///< empty: none
   bool json = false;
 
   void add_options(CLI::App& command);

@@ -75,8 +75,8 @@ TEST_F(CampaignShards, DrivenByThreeProcessesAtOnceComeToNoHarm) {
   run_all();
   const std::string text = read_text(shard(out_, 2));
   fs::remove(shard(out_, 2));
-  std::vector<pid_t> processes;
-  for (int i = 0; i < 3; ++i) processes.push_back(start(step("run-shard", out_) + "2 -j 1"));
+  std::vector<pid_t> processes(3);
+  for (pid_t& process : processes) process = start(step("run-shard", out_) + "2 -j 1");
   for (const pid_t process : processes) EXPECT_EQ(wait_for(process), 0);
   EXPECT_EQ(read_text(shard(out_, 2)), text);
   for (const auto& entry : fs::directory_iterator(out_ / "shards"))
