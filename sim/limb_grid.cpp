@@ -43,9 +43,11 @@ void LimbGrid::add(const std::vector<BodyPart>& parts) {
 
 const std::vector<ViewId>& LimbGrid::near(int u, int v) {
   if (!of_rows_.empty()) return of_rows_[static_cast<std::size_t>(v / kTile)];
-  Cell& tile = tiles_[static_cast<std::size_t>(v / kTile * tile_columns_ + u / kTile)];
+  const int at_tile = v / kTile * tile_columns_ + u / kTile;
+  Cell& tile = tiles_[static_cast<std::size_t>(at_tile)];
   if (tile.known) return tile.limbs;
-  Cell& block = blocks_[static_cast<std::size_t>(v / kBlock * block_columns_ + u / kBlock)];
+  const int at_block = v / kBlock * block_columns_ + u / kBlock;
+  Cell& block = blocks_[static_cast<std::size_t>(at_block)];
   return filled(tile, u, v, kTile, filled(block, u, v, kBlock, every_));
 }
 

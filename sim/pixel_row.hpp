@@ -33,8 +33,9 @@ struct PixelRow {
     for (const Piece& piece : pieces) {
       if (!u.empty()) {
         for (int i = 0; i < piece.count; ++i) {
-          u[static_cast<std::size_t>(count + i)] = piece.u + i;
-          v[static_cast<std::size_t>(count + i)] = piece.v;
+          const int at = count + i;
+          u[static_cast<std::size_t>(at)] = piece.u + i;
+          v[static_cast<std::size_t>(at)] = piece.v;
         }
       }
       count += piece.count;

@@ -38,7 +38,8 @@ void TileBatches::add(const imaging::Run& run, std::ptrdiff_t out) {
 /// Counts the pieces of each tile and puts them there, in the order in which they were asked for.
 void TileBatches::sort_by_tile() {
   const auto tile_of = [this](const Piece& piece) {
-    return static_cast<std::size_t>(piece.v / kTile * columns_ + piece.u / kTile);
+    const int tile = piece.v / kTile * columns_ + piece.u / kTile;
+    return static_cast<std::size_t>(tile);
   };
   std::vector<std::size_t> next;
   for (const Piece& piece : pieces_) {

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -223,10 +224,10 @@ int merge(const CampaignOptions& options) {
   }
   const auto lock = evaluation::lock_folder(folder);
   const auto campaign = evaluation::planned_campaign(folder);
-  const auto merged = evaluation::read_shards(folder, plan, campaign, options.any_version);
+  auto merged = evaluation::read_shards(folder, plan, campaign, options.any_version);
   std::vector<std::string> programs;
   if (merged.programs.size() > 1) programs.assign(merged.programs.begin(), merged.programs.end());
-  return write_campaign(folder, campaign, merged.finished, options.output, programs);
+  return write_campaign(folder, campaign, std::move(merged.finished), options.output, programs);
 }
 
 void add_folder(CLI::App& command, CampaignOptions& options) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -47,9 +48,9 @@ void CampaignOutput::add_options(CLI::App& command) {
 }
 
 int write_campaign(const std::filesystem::path& folder, const evaluation::Campaign& campaign,
-                   const std::map<evaluation::CampaignTask, evaluation::DriveScore>& finished,
+                   std::map<evaluation::CampaignTask, evaluation::DriveScore> finished,
                    const CampaignOutput& output, const std::vector<std::string>& programs) {
-  const auto scores = evaluation::scores_by_arm(campaign, finished);
+  const auto scores = evaluation::scores_by_arm(campaign, std::move(finished));
   const auto statistics = evaluation::campaign_statistics(campaign, scores);
   const auto worst = evaluation::worst_missions(scores, kWorst);
   const std::string csv = evaluation::campaign_csv(campaign, scores);

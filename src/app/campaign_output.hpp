@@ -25,7 +25,7 @@ struct CampaignOutput {
 /// statistics. Gives the program's exit status: 1 when a mission did not arrive. @p programs as
 /// campaign_json() takes them.
 int write_campaign(const std::filesystem::path& folder, const evaluation::Campaign& campaign,
-                   const std::map<evaluation::CampaignTask, evaluation::DriveScore>& finished,
+                   std::map<evaluation::CampaignTask, evaluation::DriveScore> finished,
                    const CampaignOutput& output, const std::vector<std::string>& programs = {});
 
 /// Adds -j; 0 stands for all cores.

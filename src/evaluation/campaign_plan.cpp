@@ -74,6 +74,18 @@ Arm planned_arm(const fs::path& folder, const Json& json, std::size_t number) {
   return arm;
 }
 
+/// What @p read makes of the folder's plan. Throws InputError when the plan is of another form.
+template <typename Read>
+auto read_as(const fs::path& folder, Read read) {
+  const Json json = read_plan_json(folder);
+  try {
+    return read(json);
+  } catch (const Json::exception&) {
+    throw InputError((folder / kPlan).string() +
+                     " is not of the form that this version of the program reads");
+  }
+}
+
 /// Whether nothing but beginnings of a plan stands in the folder.
 bool may_hold_a_plan(const fs::path& folder) {
   if (fs::exists(folder / kPlan)) return true;
@@ -136,20 +148,21 @@ CampaignPlan write_plan(const fs::path& folder, const Campaign& campaign, int sh
 }
 
 CampaignPlan read_plan(const fs::path& folder) {
-  return plan_from(read_plan_json(folder));
+  return read_as(folder, plan_from);
 }
 
 Campaign planned_campaign(const fs::path& folder) {
-  const Json json = read_plan_json(folder);
-  Campaign campaign;
-  campaign.name = json.at("campaign");
-  campaign.command = json.at("command");
-  campaign.first_seed = json.at("seeds").at("first");
-  campaign.seeds = json.at("seeds").at("count");
-  campaign.baseline = json.at("baseline");
-  for (const Json& arm : json.at("arms"))
-    campaign.arms.push_back(planned_arm(folder, arm, campaign.arms.size()));
-  return campaign;
+  return read_as(folder, [&](const Json& json) {
+    Campaign campaign;
+    campaign.name = json.at("campaign");
+    campaign.command = json.at("command");
+    campaign.first_seed = json.at("seeds").at("first");
+    campaign.seeds = json.at("seeds").at("count");
+    campaign.baseline = json.at("baseline");
+    for (const Json& arm : json.at("arms"))
+      campaign.arms.push_back(planned_arm(folder, arm, campaign.arms.size()));
+    return campaign;
+  });
 }
 
 void require_same_program(const CampaignPlan& plan) {

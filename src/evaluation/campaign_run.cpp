@@ -3,6 +3,7 @@
 #include "work_queue.hpp"
 
 #include <mutex>
+#include <utility>
 
 #include "vigia/mission/mission.hpp"
 
@@ -43,13 +44,13 @@ void run_campaign(const Campaign& campaign, CampaignJournal& journal, int thread
   });
 }
 
-std::vector<std::vector<DriveScore>> scores_by_arm(
-    const Campaign& campaign, const std::map<CampaignTask, DriveScore>& finished) {
+std::vector<std::vector<DriveScore>> scores_by_arm(const Campaign& campaign,
+                                                   std::map<CampaignTask, DriveScore> finished) {
   std::vector<std::vector<DriveScore>> scores(campaign.arms.size());
-  for (std::size_t arm = 0; arm < scores.size(); ++arm)
-    for (int i = 0; i < campaign.seeds; ++i)
-      scores[arm].push_back(
-          finished.at({arm, campaign.first_seed + static_cast<std::uint64_t>(i)}));
+  for (std::size_t number = 0; number < campaign.missions(); ++number) {
+    const CampaignTask task = campaign.task(number);
+    scores[task.arm].push_back(std::move(finished.at(task)));
+  }
   return scores;
 }
 

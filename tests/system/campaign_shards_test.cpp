@@ -166,6 +166,13 @@ TEST_F(CampaignShards, OfAnotherVersionAreMixedOnlyWhenAsked) {
   EXPECT_THAT(read_text(out_ / "summary.json"), HasSubstr("\"mixed_programs\""));
 }
 
+TEST_F(CampaignShards, OfAPlanOfAnotherFormAreRefused) {
+  change_header(out_ / "plan.json", "\"shards\":3", "\"pieces\":3");
+  const auto driven = run_shard(out_, 1);
+  EXPECT_EQ(driven.status, 2);
+  EXPECT_THAT(driven.err, HasSubstr("plan.json is not of the form"));
+}
+
 TEST_F(CampaignShards, OfAnotherBuildsPlanAreRefused) {
   change_header(out_ / "plan.json", "\"build\":\"", "\"build\":\"0");
   const auto driven = run_shard(out_, 1);
@@ -189,6 +196,23 @@ TEST_F(CampaignShards, OfAFullDiskAreRefusedAndResumed) {
   ASSERT_EQ(evaluate(whole_).status, 1);
   EXPECT_EQ(merge().status, 1);
   expect_same_results(out_, whole_);
+}
+
+TEST_F(CampaignShards, AreNeitherPlannedNorMergedOnAFullDisk) {
+  run_all();
+  const auto limited = [&](const std::string& blocks, const std::string& arguments) {
+    return vigia::testing::run_process("sh -c \"trap '' 25; ulimit -f " + blocks + "; exec " +
+                                           std::string(VIGIA_PROGRAM) + " " + arguments + "\"",
+                                       dir_.path());
+  };
+  const auto merged = limited("4", step("merge", out_));
+  EXPECT_EQ(merged.status, 2);
+  EXPECT_THAT(merged.err, HasSubstr("File too large"));
+  const auto planned =
+      limited("8", "campaign plan " + file_.string() + " --shards 3 --out " + whole_.string());
+  EXPECT_EQ(planned.status, 2);
+  EXPECT_THAT(planned.err, HasSubstr("File too large"));
+  EXPECT_FALSE(fs::exists(whole_ / "plan.json"));
 }
 
 TEST_F(CampaignShards, HaveTheCommandThatRepeatsTheWorstMission) {

@@ -27,7 +27,7 @@ void run_campaign(const Campaign& campaign, CampaignJournal& journal, int thread
                   const std::function<void(const CampaignProgress&)>& told = {});
 
 /// The scores of a finished campaign: [arm][seed], whatever the order in which they finished.
-std::vector<std::vector<DriveScore>> scores_by_arm(
-    const Campaign& campaign, const std::map<CampaignTask, DriveScore>& finished);
+std::vector<std::vector<DriveScore>> scores_by_arm(const Campaign& campaign,
+                                                   std::map<CampaignTask, DriveScore> finished);
 
 }  // namespace vigia::evaluation
