@@ -43,8 +43,8 @@ const std::vector<ViewId>& TileGrid::every(const std::vector<SurfaceView>& views
 
 const std::vector<ViewId>& TileGrid::seen_in_block(int u, int v,
                                                    const std::vector<SurfaceView>& views) {
-  Block& block =
-      blocks_[static_cast<std::size_t>(v / kBlock * blocks_in(image_width(*model_)) + u / kBlock)];
+  const int at = v / kBlock * blocks_in(image_width(*model_)) + u / kBlock;
+  Block& block = blocks_[static_cast<std::size_t>(at)];
   if (!block.known) {
     const int left = u / kBlock * kBlock;
     const int top = v / kBlock * kBlock;
@@ -58,7 +58,8 @@ const std::vector<ViewId>& TileGrid::seen_in_block(int u, int v,
 
 const Tile& TileGrid::tile_of(int u, int v, const std::vector<SurfaceView>& views,
                               const std::vector<StripeView>& stripes) {
-  Tile& tile = tiles_[static_cast<std::size_t>(v / kTile * columns_ + u / kTile)];
+  const int at = v / kTile * columns_ + u / kTile;
+  Tile& tile = tiles_[static_cast<std::size_t>(at)];
   if (!tile.known)
     compute(tile, u / kTile * kTile, v / kTile * kTile, seen_in_block(u, v, views), views, stripes);
   return tile;

@@ -6,6 +6,8 @@
 
 #include <Eigen/LU>
 
+#include "vigia/core/median.hpp"
+
 namespace vigia::tracking {
 namespace {
 
@@ -66,12 +68,6 @@ double nearest_tint(const std::array<DotFit, kPatternDots>& dots, std::size_t pl
       nearest = std::min(nearest,
                          (tint_of(dots[i].levels) - tint_of(dots[place].levels)).matrix().norm());
   return nearest < kOtherInk ? nearest : 0.0;
-}
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// The median of one feature over the ring's dots.

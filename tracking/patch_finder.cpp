@@ -140,7 +140,8 @@ DarkSpot fill(const PatchWindow& window, const DarkChord& chord, const Window& f
   std::vector<char> taken(window.grey.size(), 0);
   std::vector<std::array<int, 2>> open;
   const auto take = [&](int u, int v) {
-    const auto index = static_cast<std::size_t>((v - w.v) * w.width + (u - w.u));
+    const int at = (v - w.v) * w.width + (u - w.u);
+    const auto index = static_cast<std::size_t>(at);
     if (taken[index] != 0 || window.grey[index] >= level) return;
     taken[index] = 1;
     open.push_back({u, v});
@@ -176,7 +177,7 @@ DarkSpot fill(const PatchWindow& window, const DarkChord& chord, const Window& f
 
 /// The spot at half its own contrast: the chord may have met no more than a corner of it.
 DarkSpot dark_spot(const PatchWindow& window, DarkChord& chord, const Window& frame) {
-  const DarkSpot first = fill(window, chord, frame);
+  DarkSpot first = fill(window, chord, frame);
   if (first.area < 1.0) return first;
   chord.patch = first.darkest;
   return fill(window, chord, frame);

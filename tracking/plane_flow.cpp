@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "vigia/core/angle.hpp"
+#include "vigia/core/median.hpp"
 
 namespace vigia::tracking {
 namespace {
@@ -43,12 +44,6 @@ GreySample sample(const cv::Mat& image, double u, double v) {
   const double top = a + fu * (b - a);
   const double bottom = c + fu * (d - c);
   return {top + fv * (bottom - top), (1.0 - fv) * (b - a) + fv * (d - c), bottom - top};
-}
-
-double median_of(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace

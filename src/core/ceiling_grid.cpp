@@ -20,7 +20,8 @@ void describe(ParamVisitor& v, CeilingGrid& grid) {
   v.number("placement_m", grid.placement_m, {0.0, 0.1}, "σ of a patch's true place, in x and in y");
   v.angle("placement_deg", grid.placement_turn, {0.0, 20.0}, "σ of a patch's true direction");
   v.given("min_m", [&] {
-    auto& extent = grid.extent.emplace();
+    grid.extent = CeilingGrid::Extent{};
+    CeilingGrid::Extent& extent = *grid.extent;
     v.vector("min_m", extent.min, {-1e4, 1e4}, About("where patches begin").required());
     v.vector("max_m", extent.max, {-1e4, 1e4}, About("where they end").required());
     v.require(v.reader() == nullptr || (extent.min.array() <= extent.max.array()).all(), "max_m",

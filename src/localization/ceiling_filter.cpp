@@ -159,6 +159,7 @@ std::vector<CeilingFilter::Seen> CeilingFilter::associated(const std::vector<See
       found->second = {off, one};
   }
   std::vector<Seen> result;
+  result.reserve(by_cell.size());
   for (auto& [cell, one] : by_cell) result.push_back(one.second);
   return result;
 }

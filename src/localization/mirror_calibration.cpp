@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Dense>
 
+#include "vigia/core/median.hpp"
 #include "vigia/localization/field_match.hpp"
 
 namespace vigia::localization {
@@ -118,12 +119,6 @@ std::optional<OnLine> nearest_line(const FieldMap& field, const MirrorPoint& poi
   return best;
 }
 
-double calibration_median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// The estimate while it is being found.
 class MirrorFit {
  public:
@@ -153,8 +148,7 @@ class MirrorFit {
           all.push_back(*found);
         }
     if (all.empty()) return all;
-    const double limit =
-        params_.gate * std::max(1.0, kMedianToSigma * calibration_median(std::move(sizes)));
+    const double limit = params_.gate * std::max(1.0, kMedianToSigma * median_of(std::move(sizes)));
     all.erase(
         std::remove_if(all.begin(), all.end(),
                        [&](const OnLine& p) { return std::abs(p.residual.whitened()) > limit; }),
