@@ -96,6 +96,16 @@ void describe_field_looks(ParamVisitor& v, Appearance& a) {
   v.integer("spectators", a.spectators, {0, 200}, "people in bright clothes round the field");
 }
 
+void describe_ceiling_looks(ParamVisitor& v, Appearance& a) {
+  v.number("patch_grey", a.patch_grey, kGrey, "of the ceiling's patches");
+  v.number("patches_missing", a.patches_missing, {0.0, 1.0}, "share of them that have fallen off");
+  v.number("patches_spurious", a.patches_spurious, {0.0, 1.0},
+           "share of the cells that have a second patch, anywhere in them");
+  v.number("lamp_pitch_m", a.lamp_pitch_m, {0.0, 100.0},
+           "between lamps of 1.2 by 0.2 m on the ceiling; 0: none");
+  v.number("lamp_grey", a.lamp_grey, kGrey, "of those lamps");
+}
+
 void describe_stripe(ParamVisitor& v, Stripe& stripe) {
   v.vector("from_m", stripe.from, {-1e4, 1e4}, About("one end").required());
   v.vector("to_m", stripe.to, {-1e4, 1e4}, About("the other end").required());
@@ -164,6 +174,8 @@ void describe_appearance(ParamVisitor& v, const WorldMap& world, Appearance& app
     describe_surfaces(v, appearance);
     v.where(world.field.has_value(), "the world has a `field`",
             [&] { describe_field_looks(v, appearance); });
+    v.where(world.ceiling.has_value(), "the world has a `ceiling`",
+            [&] { describe_ceiling_looks(v, appearance); });
   });
   v.each("stripes", "straight lines painted on the floor or the ceiling",
          [&] { describe_stripe(v, appearance.stripes.emplace_back()); });

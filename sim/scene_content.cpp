@@ -83,6 +83,7 @@ SceneContent::SceneContent(const WorldMap& world, const Appearance& look, std::u
   for (const Clutter& clutter : look.clutter) paint(clutter);
   for (const Landmark& landmark : world.landmarks.all()) hang(landmark, look);
   if (world.field) lay_out(*world.field, world.plan, look);
+  if (world.ceiling) hang(*world.ceiling, world.plan, look);
   if (look.light_kelvin != Appearance{}.light_kelvin) shine(lamp_gains(look.light_kelvin));
 }
 
@@ -139,6 +140,19 @@ void SceneContent::lay_out(const FieldMap& map, const FloorPlan& plan, const App
     surfaces.insert(surfaces.end(), group.begin(), group.end());
   for (auto& group : {post_parts(map), spectator_parts(map, plan, look)})
     solids.insert(solids.end(), group.begin(), group.end());
+}
+
+/// The ceiling follows the floor among the surfaces of a building.
+void SceneContent::hang(const CeilingGrid& grid, const FloorPlan& plan, const Appearance& look) {
+  CeilingTruth truth;
+  truth.grid = grid;
+  truth.seed = derive_seed(look.seed, "ceiling patches");
+  truth.missing = look.patches_missing;
+  truth.spurious = look.patches_spurious;
+  truth.patch_grey = look.patch_grey;
+  truth.lamp_pitch_m = look.lamp_pitch_m;
+  truth.lamp_grey = look.lamp_grey;
+  ceiling = {truth, plan.ceiling_m(), plan.faces().size() + 1};
 }
 
 /// Gives everything the lamp's colour.

@@ -50,6 +50,7 @@ struct SceneContent {
   void paint(const Stripe& stripe, double ceiling_m);
   void paint(const Clutter& clutter);
   void hang(const Landmark& landmark, const Appearance& look);
+  void hang(const CeilingGrid& grid, const FloorPlan& plan, const Appearance& look);
   void shine(const std::array<float, 3>& gains);
 };
 

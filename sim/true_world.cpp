@@ -104,7 +104,8 @@ WorldMap true_world(const WorldMap& map, const DisturbanceParams& disturbances,
   std::vector<Landmark> landmarks = map.landmarks.all();
   if (disturbances.map_error) displace(*disturbances.map_error, seed, landmarks);
   if (disturbances.missing_landmarks) remove(*disturbances.missing_landmarks, seed, landmarks);
-  return {map.name, map.plan, map.ground, LandmarkMap(std::move(landmarks)), map.field};
+  return {map.name,  map.plan,   map.ground, LandmarkMap(std::move(landmarks)),
+          map.field, map.ceiling};
 }
 
 Appearance true_appearance(const Appearance& appearance, const WorldMap& world,

@@ -48,8 +48,17 @@ ImageExtent image_extent(const Observation& observation, const Landmark* landmar
                    return ImageExtent{{seen.ellipse.u, seen.ellipse.v}, seen.ellipse.a};
                  },
                  [&](const PointsObservation& seen) { return extent_of(seen, landmark); },
-                 [](const FieldObservation&) { return ImageExtent{}; }},
+                 [](const FieldObservation&) { return ImageExtent{}; },
+                 [](const PatchesObservation&) { return ImageExtent{}; }},
       observation);
+}
+
+bool shows_landmark(const Observation& observation) {
+  return std::visit(Overloaded{[](const EllipseObservation&) { return true; },
+                               [](const PointsObservation&) { return true; },
+                               [](const FieldObservation&) { return false; },
+                               [](const PatchesObservation&) { return false; }},
+                    observation);
 }
 
 const Shot& shot_of(const Observation& observation) {

@@ -1,6 +1,7 @@
 #include "vigia/core/rig.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -50,6 +51,13 @@ CameraModel Camera::model(double zoom_mm) const {
 
 std::optional<ZoomCalibration> zoom_calibration(const Optics& optics) {
   return std::visit([](const auto& by) { return calibration_of(by); }, optics);
+}
+
+bool looks_up(const Camera& camera) {
+  const auto* fixed = std::get_if<FixedMount>(&camera.mount);
+  const auto* model = std::get_if<CameraModel>(&camera.optics);
+  return fixed != nullptr && model != nullptr && std::holds_alternative<Intrinsics>(*model) &&
+         fixed->rMc.linear()(2, 2) > std::sqrt(0.5);
 }
 
 bool on_head(const Camera& camera) {

@@ -111,6 +111,11 @@ void describe(ParamVisitor& v, WorldMap& world) {
   for (const PlacedLandmark& entry : placed) landmarks.push_back(entry.landmark);
   world.landmarks = LandmarkMap(std::move(landmarks));
   v.given("field", [&] { describe_field(v, world); });
+  v.given("ceiling", [&] {
+    CeilingGrid& grid = world.ceiling.emplace();
+    v.map("ceiling", grid, "patches of one colour on a grid through the world's origin");
+    grid.height_m = room.height_m;
+  });
 }
 
 WorldMap read_world_map(MapReader& reader) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "vigia/mission/localizers.hpp"
+
 namespace vigia::evaluation {
 namespace {
 
@@ -15,6 +17,12 @@ Eigen::Matrix3d covariance_of_anywhere(const FloorPlan& plan) {
   return variances.asDiagonal();
 }
 
+std::optional<EstimatorSetup::Ceiling> ceiling_of(const mission::MissionSetup& setup) {
+  const auto camera = mission::ceiling_camera(setup);
+  if (!camera) return std::nullopt;
+  return EstimatorSetup::Ceiling{*camera, *setup.world.ceiling};
+}
+
 EstimatorSetup estimator_setup(const mission::MissionSetup& setup) {
   return {setup.world.landmarks,
           setup.on_ground(),
@@ -22,7 +30,8 @@ EstimatorSetup estimator_setup(const mission::MissionSetup& setup) {
           setup.robot.robot.sensor,
           setup.prior ? setup.prior->covariance : covariance_of_anywhere(setup.world.plan),
           setup.prior.has_value(),
-          setup.world.field};
+          setup.world.field,
+          ceiling_of(setup)};
 }
 
 }  // namespace

@@ -33,6 +33,13 @@ int& count_of(LocalizerScore& score, localization::UpdateStatus status) {
 EstimatorScorer::EstimatorScorer(EstimatorSetup setup)
     : setup_(std::move(setup)), bound_(setup_.prior_covariance, setup_.on_ground, setup_.sensor) {
   if (setup_.field) field_.emplace(*setup_.field);
+  if (!setup_.ceiling) return;
+  localization::CeilingFilterParams params;
+  params.odometry = setup_.odometry;
+  // Nothing is refused: of a patch its covariance counts, not where it is.
+  params.gate = 1e12;
+  ceiling_.emplace(setup_.ceiling->camera, setup_.ceiling->grid, params);
+  ceiling_->reset({}, {{}, setup_.prior_covariance});
 }
 
 void EstimatorScorer::add(const mission::EstimatorTick& tick, std::size_t localizer) {
@@ -43,6 +50,10 @@ void EstimatorScorer::add(const mission::EstimatorTick& tick, std::size_t locali
     const auto u = chord_increment(truth.pose_before, truth.pose, turned, tick.odometry.from,
                                    tick.odometry.to);
     bound_.predict(truth.pose_before, u, control_covariance(u, setup_.odometry));
+    if (ceiling_) {
+      ceiling_->relinearise(truth.pose_before, {}, {});
+      ceiling_->predict(u);
+    }
   }
   const auto fused = count_updates(tick, localizer);
   if (belief.status == BeliefStatus::lost)
@@ -71,6 +82,11 @@ void EstimatorScorer::bound_by(const Observation& observation,
     // Of the points as they truly lie: on the map's lines or by chance.
     bound_.update(
         field_->linearise(seen->scan.points, truth.pose, field_->params().clutter).complete);
+    return;
+  }
+  if (const auto* seen = std::get_if<PatchesObservation>(&observation); seen && ceiling_) {
+    ceiling_->relinearise(truth.pose, {}, {});
+    ceiling_->update(seen->patches);
     return;
   }
   const Landmark* landmark =
@@ -111,8 +127,12 @@ void EstimatorScorer::add_errors(const mission::EstimatorTick& tick, const Belie
   looks.back() = {*fused, nees, squared, bound_m2};
 }
 
+Eigen::Matrix3d EstimatorScorer::bound_covariance() const {
+  return ceiling_ ? ceiling_->belief().covariance : bound_.covariance();
+}
+
 double EstimatorScorer::bound_position_m2() const {
-  return bound_.covariance().topLeftCorner<2, 2>().trace();
+  return bound_covariance().topLeftCorner<2, 2>().trace();
 }
 
 LocalizerScore EstimatorScorer::score() const {
@@ -122,7 +142,7 @@ LocalizerScore EstimatorScorer::score() const {
   score.heading_rmse_rad = std::sqrt(sums_.squared_heading / n);
   score.nees_mean = sums_.nees / n;
   score.pcrlb_position_rms_m = std::sqrt(sums_.bound_trace / n);
-  const Eigen::Matrix3d bound = bound_.covariance();
+  const Eigen::Matrix3d bound = bound_covariance();
   score.pcrlb_position_final_m = mean_length(bound.topLeftCorner<2, 2>());
   score.pcrlb_heading_final_rad = std::sqrt(2.0 * bound(2, 2) / kPi);
   score.loss = losses_.score();

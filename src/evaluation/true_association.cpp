@@ -39,7 +39,8 @@ const Landmark* true_landmark(const Observation& observation, const LandmarkMap&
                    return nearest_disc(seen, map, on_ground, truth, bias);
                  },
                  [&](const PointsObservation& seen) { return map.find(seen.landmark); },
-                 [](const FieldObservation&) -> const Landmark* { return nullptr; }},
+                 [](const FieldObservation&) -> const Landmark* { return nullptr; },
+                 [](const PatchesObservation&) -> const Landmark* { return nullptr; }},
       observation);
 }
 

@@ -86,7 +86,8 @@ std::optional<LandmarkId> named_landmark(const Observation& observation) {
   return std::visit(
       Overloaded{[](const EllipseObservation&) { return std::optional<LandmarkId>(); },
                  [](const PointsObservation& seen) { return std::optional(seen.landmark); },
-                 [](const FieldObservation&) { return std::optional<LandmarkId>(); }},
+                 [](const FieldObservation&) { return std::optional<LandmarkId>(); },
+                 [](const PatchesObservation&) { return std::optional<LandmarkId>(); }},
       observation);
 }
 
@@ -116,7 +117,8 @@ std::optional<Eigen::Vector2d> centre_shift(const Observation& observation,
                    }
                    return Eigen::Vector2d(image_extent(predicted).centre - *centre);
                  },
-                 [](const FieldObservation&) { return std::optional<Eigen::Vector2d>(); }},
+                 [](const FieldObservation&) { return std::optional<Eigen::Vector2d>(); },
+                 [](const PatchesObservation&) { return std::optional<Eigen::Vector2d>(); }},
       observation);
 }
 
@@ -263,9 +265,10 @@ std::optional<BearingOnlyLocalizer::Sightline> BearingOnlyLocalizer::sightline(
 }
 
 UpdateResult BearingOnlyLocalizer::update(const Observation& observation) {
-  if (std::holds_alternative<FieldObservation>(observation)) return {};
+  if (!shows_landmark(observation)) return {};
   const Shot& shot = shot_of(observation);
   const bool usable = std::visit(Overloaded{[](const FieldObservation&) { return false; },
+                                            [](const PatchesObservation&) { return false; },
                                             [](const auto& seen) { return is_usable(seen); }},
                                  observation);
   if (!usable) return {UpdateStatus::degenerate, std::nullopt, 0.0, 0};

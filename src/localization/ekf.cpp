@@ -88,10 +88,11 @@ void EkfLocalizer::predict(const OdometryIncrement& increment) {
 
 UpdateResult EkfLocalizer::update(const Observation& observation) {
   const bool usable = std::visit(Overloaded{[](const FieldObservation&) { return false; },
+                                            [](const PatchesObservation&) { return false; },
                                             [](const auto& seen) { return is_usable(seen); }},
                                  observation);
   UpdateResult result{UpdateStatus::degenerate, std::nullopt, 0.0, 0};
-  if (std::holds_alternative<FieldObservation>(observation))
+  if (!shows_landmark(observation))
     result.status = UpdateStatus::unsupported;
   else if (!has_prior_)
     result.status = UpdateStatus::no_prior;

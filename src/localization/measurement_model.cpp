@@ -21,6 +21,7 @@ MeasurementModel::MeasurementModel(LandmarkMap map, const RigOnGround& on_ground
 Association MeasurementModel::associate(const Observation& observation,
                                         const LookState& state) const {
   return std::visit(Overloaded{[](const FieldObservation&) { return Association{}; },
+                               [](const PatchesObservation&) { return Association{}; },
                                [&](const auto& seen) {
                                  auto found = localization::associate(*this, seen, state);
                                  Association association{found.result, std::nullopt};
@@ -33,6 +34,7 @@ Association MeasurementModel::associate(const Observation& observation,
 std::optional<Match> MeasurementModel::match(const Observation& observation,
                                              const Landmark& landmark) const {
   return std::visit(Overloaded{[](const FieldObservation&) { return std::optional<Match>(); },
+                               [](const PatchesObservation&) { return std::optional<Match>(); },
                                [&](const auto& seen) -> std::optional<Match> {
                                  return localization::match(*this, seen, landmark);
                                }},
@@ -43,6 +45,7 @@ std::optional<double> MeasurementModel::log_likelihood(const Observation& observ
                                                        const Pose2& pose) const {
   return std::visit(
       Overloaded{[](const FieldObservation&) { return std::optional<double>(); },
+                 [](const PatchesObservation&) { return std::optional<double>(); },
                  [&](const auto& seen) { return localization::log_likelihood(*this, seen, pose); }},
       observation);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "vigia/core/random.hpp"
+#include "vigia/localization/ceiling_localizer.hpp"
 #include "vigia/localization/ekf.hpp"
 #include "vigia/localization/field_localizer.hpp"
 #include "vigia/localization/odometry_localizer.hpp"
@@ -25,6 +26,10 @@ bool has_landmarks(const MissionSetup& setup) {
 
 bool has_field(const MissionSetup& setup) {
   return setup.world.field.has_value();
+}
+
+bool has_ceiling(const MissionSetup& setup) {
+  return ceiling_camera(setup).has_value();
 }
 
 bool has_patterns(const MissionSetup& setup) {
@@ -65,6 +70,14 @@ LocalizerPtr make_murea(const MissionSetup& setup, std::uint64_t /*seed*/) {
   localization::MureaLocalizerParams params;
   params.odometry = setup.noise.odometry;
   return localization::make_murea(setup.world.field.value_or(FieldMap{}), params);
+}
+
+LocalizerPtr make_ceiling(const MissionSetup& setup, std::uint64_t /*seed*/) {
+  localization::CeilingFilterParams params;
+  params.odometry = setup.noise.odometry;
+  return std::make_unique<localization::CeilingLocalizer>(
+      ceiling_camera(setup).value_or(localization::CeilingCamera{}),
+      setup.world.ceiling.value_or(CeilingGrid{}), params);
 }
 
 LocalizerPtr make_bearing_only(const MissionSetup& setup, std::uint64_t /*seed*/) {
@@ -119,8 +132,24 @@ const std::vector<LocalizerEntry>& localizers() {
        FirstPose::itself,
        &has_field,
        &make_murea},
+      {{"ceiling",
+        "all patches of a ceiling in sight, jointly; which cell it is by motion (Chonbuk)",
+        "a ceiling in the world and a fixed camera that looks up"},
+       true,
+       FirstPose::prior,
+       &has_ceiling,
+       &make_ceiling},
   };
   return table;
+}
+
+std::optional<localization::CeilingCamera> ceiling_camera(const MissionSetup& setup) {
+  if (!setup.world.ceiling) return std::nullopt;
+  for (const sim::CameraSetup& camera : setup.robot.cameras)
+    if (looks_up(camera.camera))
+      return localization::CeilingCamera{camera.camera.model(0.0), camera.camera.rMc({}),
+                                         setup.world.ceiling->height_m};
+  return std::nullopt;
 }
 
 std::vector<std::string> usual_localizers(const MissionSetup& setup) {

@@ -7,7 +7,8 @@
 
 namespace vigia::mission {
 
-const char* eye_of(const Camera& camera) {
+const char* eye_of(const Camera& camera, const WorldMap& world) {
+  if (world.ceiling && looks_up(camera)) return "ceiling";
   return zoom_calibration(camera.optics) ? "landmark" : "field";
 }
 
@@ -17,14 +18,15 @@ std::vector<CameraFeed> make_feeds(const MissionSetup& setup, const Rig& rig, Du
   std::vector<CameraFeed> feeds;
   for (const Camera& camera : rig.cameras)
     feeds.emplace_back(camera, delay, processing,
-                       find_name(perception::eyes(), eye_of(camera))
+                       find_name(perception::eyes(), eye_of(camera, setup.world))
                            ->make({setup.world.landmarks,
                                    setup.on_ground(),
                                    setup.noise.sensor,
                                    setup.tracker,
                                    &camera == directed,
                                    setup.world.field ? &*setup.world.field : nullptr,
-                                   {setup.robot.robot.radius_m, setup.robot.robot.body_height_m}}));
+                                   {setup.robot.robot.radius_m, setup.robot.robot.body_height_m},
+                                   setup.world.ceiling ? &*setup.world.ceiling : nullptr}));
   return feeds;
 }
 

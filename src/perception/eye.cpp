@@ -1,5 +1,6 @@
 #include "vigia/perception/eye.hpp"
 
+#include "ceiling_eye.hpp"
 #include "field_eye.hpp"
 #include "landmark_eye.hpp"
 
@@ -20,7 +21,10 @@ const std::vector<EyeEntry>& eyes() {
        make<LandmarkEye>},
       {{"field", "scans a field of play along rays for lines, goals and posts",
         "an omnidirectional camera in colour, fixed to the base; a field in the world"},
-       make<FieldEye>}};
+       make<FieldEye>},
+      {{"ceiling", "finds the patches of a ceiling",
+        "a perspective camera, fixed to the base, that looks up; a ceiling in the world"},
+       make<CeilingEye>}};
   return entries;
 }
 

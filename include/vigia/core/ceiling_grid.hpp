@@ -9,6 +9,8 @@
 
 namespace vigia {
 
+class ParamVisitor;
+
 /// Patches of one colour and shape on a ceiling, one at every node of a square grid: a rule, not a
 /// list, so that a hall of any size takes the same memory. Patches have no identity. Seen from
 /// below, a patch is a strip whose long axis points along the grid's x; one with a polarity mark
@@ -48,6 +50,9 @@ constexpr bool operator<(const CeilingCell& a, const CeilingCell& b) {
 /// A patch's tongue as shares of its length and width; the body is what lies behind it.
 inline constexpr double kTongueLength = 1.0 / 6.0;
 inline constexpr double kTongueWidth = 1.0 / 3.0;
+
+/// The keys of a world file's `ceiling`; the height is the room's.
+void describe(ParamVisitor& v, CeilingGrid& grid);
 
 /// Where the middle of a cell's patch should hang, world frame.
 Eigen::Vector2d cell_centre(const CeilingGrid& grid, const CeilingCell& cell);

@@ -8,6 +8,7 @@
 
 #include "vigia/core/field_scan.hpp"
 #include "vigia/core/landmark.hpp"
+#include "vigia/core/patch_image.hpp"
 #include "vigia/core/shot.hpp"
 
 namespace vigia {
@@ -58,8 +59,15 @@ struct FieldObservation {
   FieldScan scan;  ///< at the shot's stamp
 };
 
+/// What one image of a camera that looks up shows of a patched ceiling.
+struct PatchesObservation {
+  Shot shot;
+  std::vector<PatchImage> patches;
+};
+
 /// What eyes hand to localization: closed by the geometry of the feature.
-using Observation = std::variant<EllipseObservation, PointsObservation, FieldObservation>;
+using Observation =
+    std::variant<EllipseObservation, PointsObservation, FieldObservation, PatchesObservation>;
 
 /// Where a landmark lies in the image and how wide it is.
 struct ImageExtent {
@@ -67,9 +75,12 @@ struct ImageExtent {
   double radius_px = 0.0;  ///< of extent_radius(): the longer semi-axis of a slanted landmark
 };
 
-/// The extent that an observation shows; a field's has none and is empty. A pattern of which one
-/// ring alone is seen is scaled up to the whole by @p landmark, where it is known.
+/// The extent that an observation shows; a field's or a ceiling's has none and is empty. A pattern
+/// of which one ring alone is seen is scaled up to the whole by @p landmark, where it is known.
 ImageExtent image_extent(const Observation& observation, const Landmark* landmark = nullptr);
+
+/// Whether it is the image of a landmark of the map.
+bool shows_landmark(const Observation& observation);
 
 /// The shot that shows it.
 const Shot& shot_of(const Observation& observation);

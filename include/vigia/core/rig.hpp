@@ -57,6 +57,8 @@ struct Rig {
 };
 
 bool on_head(const Camera& camera);
+/// Fixed to the base, a pinhole, its axis within 45° of the vertical.
+bool looks_up(const Camera& camera);
 
 /// The camera that an attention directs: the first on the head that is a pinhole, with a zoom or
 /// without, or nullptr.

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "vigia/core/ceiling_grid.hpp"
 #include "vigia/core/config.hpp"
 #include "vigia/core/field_map.hpp"
 #include "vigia/core/floor_plan.hpp"
@@ -13,18 +14,20 @@ namespace vigia {
 
 class ParamVisitor;
 
-/// What the robot knows of the building: plan, ground, landmarks, and the field on its floor.
+/// What the robot knows of the building: plan, ground, landmarks, the field on its floor, the
+/// patches on its ceiling.
 struct WorldMap {
   std::string name = "world";
   FloorPlan plan;
   Ground ground;
   LandmarkMap landmarks;
   std::optional<FieldMap> field = std::nullopt;
+  std::optional<CeilingGrid> ceiling = std::nullopt;
 };
 
-/// The keys `name`, `room`, `walls`, `obstacles`, `landmarks`, `field` of a world file. A reader
-/// throws InputError: a landmark inside a wall or outside the room, off every face, overlapping
-/// ids, …
+/// The keys `name`, `room`, `walls`, `obstacles`, `landmarks`, `field`, `ceiling` of a world file.
+/// A reader throws InputError: a landmark inside a wall or outside the room, off every face,
+/// overlapping ids, …
 void describe(ParamVisitor& v, WorldMap& world);
 
 /// Reads them; the reader stays the caller's to finish.

@@ -10,6 +10,7 @@
 #include "vigia/core/sensor_noise.hpp"
 #include "vigia/evaluation/loss_score.hpp"
 #include "vigia/evaluation/pcrlb.hpp"
+#include "vigia/localization/ceiling_filter.hpp"
 #include "vigia/localization/field_model.hpp"
 #include "vigia/mission/estimator_tick.hpp"
 
@@ -70,6 +71,12 @@ struct EstimatorSetup {
   bool prior =
       true;  ///< whether the localizer was told; if not, its errors count from the first fix
   std::optional<FieldMap> field = std::nullopt;
+  /// A patched ceiling and the camera that looks up at it.
+  struct Ceiling {
+    localization::CeilingCamera camera;
+    CeilingGrid grid;
+  };
+  std::optional<Ceiling> ceiling = std::nullopt;
 };
 
 /// Scores one localizer of a drive, simulated or recorded, by what an estimator's ticks hold:
@@ -87,6 +94,7 @@ class EstimatorScorer {
   double bound_position_m2() const;
 
  private:
+  Eigen::Matrix3d bound_covariance() const;
   std::optional<LookId> count_updates(const mission::EstimatorTick& tick, std::size_t localizer);
   void add_errors(const mission::EstimatorTick& tick, const Belief& belief,
                   std::optional<LookId> fused);
@@ -95,6 +103,8 @@ class EstimatorScorer {
   EstimatorSetup setup_;
   std::optional<localization::FieldModel> field_;
   PosteriorBound bound_;
+  /// Where there is a ceiling, the bound instead: placement errors are states of it.
+  std::optional<localization::CeilingFilter> ceiling_;
   LossScorer losses_;
   LocalizerScore score_;
   /// Over ticks with the truth.

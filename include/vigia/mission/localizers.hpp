@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "vigia/core/name_table.hpp"
+#include "vigia/localization/ceiling_model.hpp"
 #include "vigia/localization/localizer.hpp"
 #include "vigia/mission/setup.hpp"
 
@@ -32,6 +34,9 @@ const std::vector<LocalizerEntry>& localizers();
 
 /// Whether the localizer cannot be part of the mission unless that gives a prior.
 bool needs_prior(const LocalizerEntry& entry, const MissionSetup& setup);
+
+/// The first camera that looks up at the world's ceiling of patches, if there are both.
+std::optional<localization::CeilingCamera> ceiling_camera(const MissionSetup& setup);
 
 /// The usual ones that fit and can start.
 std::vector<std::string> usual_localizers(const MissionSetup& setup);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "vigia/core/belief.hpp"
+#include "vigia/core/ceiling_grid.hpp"
 #include "vigia/core/field_map.hpp"
 #include "vigia/core/gaze.hpp"
 #include "vigia/core/landmark.hpp"
@@ -66,6 +67,7 @@ struct EyeParts {
     double height_m = 0.0;  ///< 0: nothing
   };
   Hull hull = {};
+  const CeilingGrid* ceiling = nullptr;  ///< of the world, where it has one
 };
 
 struct EyeEntry : NameEntry {

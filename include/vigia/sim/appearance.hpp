@@ -51,11 +51,16 @@ struct Appearance {
   double plate_grey = 210.0;
   double plate_factor = 1.6;  ///< half the sheet's width over the disc's radius
   PlateShape plate_shape = PlateShape::square;
-  double clutter_per_m2 = 0.25;  ///< marks scattered over walls and floor
-  double carpet_grey = 88.0;     ///< of a field's carpet
-  double line_grey = 232.0;      ///< of its lines
-  int adverts = 0;               ///< boards in bright colours that stand round it
-  int spectators = 0;            ///< people in bright clothes who do
+  double clutter_per_m2 = 0.25;   ///< marks scattered over walls and floor
+  double carpet_grey = 88.0;      ///< of a field's carpet
+  double line_grey = 232.0;       ///< of its lines
+  int adverts = 0;                ///< boards in bright colours that stand round it
+  int spectators = 0;             ///< people in bright clothes who do
+  double patch_grey = 55.0;       ///< of a ceiling's patches
+  double patches_missing = 0.0;   ///< share of them that have fallen off
+  double patches_spurious = 0.0;  ///< share of the cells that have a second one, anywhere in them
+  double lamp_pitch_m = 0.0;      ///< between lamps on such a ceiling; 0: none
+  double lamp_grey = 252.0;
   std::vector<Stripe> stripes;
   std::vector<Clutter> clutter;  ///< named in the file and drawn at random
 };

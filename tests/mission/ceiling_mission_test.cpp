@@ -1,0 +1,64 @@
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "vigia/core/error.hpp"
+#include "vigia/evaluation/drive_score.hpp"
+#include "vigia/mission/localizers.hpp"
+#include "vigia/mission/mission.hpp"
+
+namespace vigia::mission {
+namespace {
+
+const std::string kHall = std::string(VIGIA_SOURCE_DIR) + "/config/missions/ceiling-hall.yaml";
+
+TEST(CeilingMission, TheRobotKnowsItsPlaceByThePatchesOfTheCeiling) {
+  evaluation::DriveScorer scorer;
+  run_mission(load_mission(kHall, {"timeout_s=20"}), 1, {&scorer});
+  const auto& localizers = scorer.score().localizers;
+  const auto& ceiling = localizers.at("ceiling");
+  EXPECT_LT(ceiling.position_rmse_m, 0.01);
+  EXPECT_LT(ceiling.position_rmse_m, 0.2 * localizers.at("odometry").position_rmse_m);
+  EXPECT_GT(ceiling.updates, 480);
+  EXPECT_EQ(ceiling.unsupported, 0);
+  EXPECT_DOUBLE_EQ(ceiling.lost_s, 0.0);
+  EXPECT_GT(ceiling.pcrlb_position_rms_m, 0.0005);
+  EXPECT_LT(ceiling.pcrlb_position_rms_m, 0.01);
+}
+
+TEST(CeilingMission, TheCeilingsLocalizerNeedsACameraThatLooksUp) {
+  try {
+    load_mission(kHall, {"robot={name: ahead, cameras: [{mount: fixed, focal_px: 500}]}",
+                         "localization.localizers=[ceiling]"});
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("'ceiling' needs a ceiling in the world and a fixed "
+                        "camera that looks up"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(CeilingMission, WithoutAPriorTheLocalizerIsRefused) {
+  try {
+    load_mission(kHall, {"start.prior=false", "localization.localizers=[ceiling]"});
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("cannot start without a prior"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(CeilingMission, APatchThatIsAsWideAsLongIsRefused) {
+  try {
+    load_mission(kHall, {"world.ceiling.width_m=0.09"});
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("longer than wide"), std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace vigia::mission
