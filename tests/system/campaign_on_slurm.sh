@@ -1,12 +1,14 @@
 #!/bin/bash
 # Drives a campaign by a Slurm of the test's own: munged, slurmctld and two slurmd on loopback, one of
 # which is killed in the middle. The merged bytes are those of one process, nothing is lost or doubled.
-# campaign_on_slurm.sh VIGIA CAMPAIGN FOLDER [SHARDS]; 77 (skipped) where there is no Slurm.
+# campaign_on_slurm.sh VIGIA CAMPAIGN FOLDER [SHARDS [SECONDS]] gives up after so many seconds, and ends with 77
+# (skipped) where there is no Slurm.
 set -euo pipefail
 vigia=$1
 campaign=$2
 folder=$3
 shards=${4:-6}
+patience=${5:-450}
 
 skip() { echo "campaign_on_slurm: $*"; exit 77; }
 fail() { echo "campaign_on_slurm: $*" >&2; tail -n 20 "$folder"/*.log >&2; exit 1; }
@@ -20,7 +22,7 @@ done
 rm -rf "$folder"
 # Its sockets' names are short, whatever the folder's is; its daemons want folders that no other can write.
 run=$(mktemp -d /tmp/vigia-slurm-XXXXXX)
-mkdir -p "$folder" "$run"/{state,spool1,spool2}
+mkdir -p "$folder" "$run/state"
 chmod 755 "$run"
 free_port() {
   local port
@@ -30,8 +32,14 @@ free_port() {
   done
 }
 daemons=()
+# ours PID: whether the process was started by this Slurm.
+ours() { { tr '\0' '\n' <"/proc/$1/environ" | grep -qx "SLURM_CONF=$run/slurm.conf"; } 2>/dev/null; }
 finish() {
-  SLURM_CONF=$run/slurm.conf scancel --user=root --quiet 2>/dev/null || true
+  # A slurmd waits for what it runs: that ends first.
+  local process
+  for process in $(pgrep -f 'slurm|run-shard'); do
+    if ours "$process"; then kill -KILL "$process" 2>/dev/null || true; fi
+  done
   kill "${daemons[@]}" 2>/dev/null || true
   wait "${daemons[@]}" 2>/dev/null || true
   rm -rf "$run"
@@ -99,14 +107,12 @@ sbatch --parsable "$big/slurm.sh" >"$folder/job.txt" || fail "sbatch refused the
 
 # Once the second node drives a shard and a shard is whole, it is killed with all that runs on it.
 whole() { find "$big/shards" -name '*.jsonl' | wc -l; }
-for ((i = 0; i < 3000; ++i)); do
+while [ "$SECONDS" -lt "$patience" ]; do
   [ "$(whole)" -ge 1 ] && squeue --noheader --states=running --nodelist=n2 | grep -q . && break
   sleep 0.1
 done
 victims=$(squeue --noheader --states=running --nodelist=n2 --format=%A)
 [ -n "$victims" ] || fail "the second node had no shard to drive"
-# ours PID: whether the process was started by this Slurm.
-ours() { tr '\0' '\n' <"/proc/$1/environ" 2>/dev/null | grep -qx "SLURM_CONF=$run/slurm.conf"; }
 kill -KILL "$node2"
 for job in $victims; do
   for step in $(pgrep -f "slurmstepd: \[$job.batch\]"); do
@@ -122,7 +128,7 @@ echo "killed node n2, which drove job $victims; $(whole) of $shards shards were 
 sleep 12
 start_node n2; daemons+=($!)
 
-for ((i = 0; i < 4000; ++i)); do
+while [ "$SECONDS" -lt "$patience" ]; do
   [ -z "$(squeue --noheader)" ] && break
   sleep 0.1
 done
