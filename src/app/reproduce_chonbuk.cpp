@@ -304,8 +304,8 @@ void tally_bursts(const std::vector<CeilingEstimate>& estimates,
     tally.mean_m += difference(one.estimate, one.truth).head<2>().norm() /
                     static_cast<double>(estimates.size());
   for (const auto& burst : bursts) {
-    const CeilingEstimate& after =
-        estimates[static_cast<std::size_t>(burst.first + burst.frames + kAfterBurst)];
+    const int then = burst.first + burst.frames + kAfterBurst;
+    const CeilingEstimate& after = estimates[static_cast<std::size_t>(then)];
     const bool lost = difference(after.estimate, after.truth).head<2>().norm() > kLostLock_m;
     ++tally.bursts;
     tally.lost += lost ? 1 : 0;
