@@ -370,7 +370,8 @@ void CeilingFilter::doubt() {
   gated_ = 0;
 }
 
-void CeilingFilter::shift_by(const CeilingCell& shift) {
+/// By value: the caller has the shift from shifts_, which this replaces.
+void CeilingFilter::shift_by(CeilingCell shift) {
   if (shift == CeilingCell{}) return;
   x_.head<2>() += cell_centre(grid_, shift);
   std::map<CeilingCell, Eigen::Index> patches;

@@ -103,7 +103,7 @@ class CeilingFilter {
   void normalise_shifts();
   void fuse(const Linearised& all);
   void doubt();
-  void shift_by(const CeilingCell& shift);
+  void shift_by(CeilingCell shift);
   using MotionJacobian = Eigen::Matrix<double, 3, 6>;
   void move(const Pose2& to, const MotionJacobian& F, const Eigen::Matrix3d& Q);
   void refresh_belief();
