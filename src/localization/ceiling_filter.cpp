@@ -293,6 +293,22 @@ std::vector<CeilingFilter::Seen> CeilingFilter::gated(const std::vector<Seen>& s
   return passed;
 }
 
+/// Those that the prediction allows. Where it allows none, two or more that agree with one twice as
+/// uncertain are believed, and the pose is then as uncertain: odometry whose variance follows the
+/// measured distance is too sure of a tick that it read too short.
+std::vector<CeilingFilter::Seen> CeilingFilter::passed_gate(const std::vector<Seen>& seen,
+                                                            const Pose2& start) {
+  std::vector<Seen> passed = gated(seen, linearise(seen, state_at(start)));
+  if (!passed.empty() || seen.size() < 2) return passed;
+  const Eigen::MatrixXd sure = P_;
+  P_.topRows<3>() *= 2.0;
+  P_.leftCols<3>() *= 2.0;
+  passed = gated(seen, linearise(seen, state_at(start)));
+  if (passed.size() >= 2) return passed;
+  P_ = sure;
+  return {};
+}
+
 /// Bayes' rule over the shifts by whole cells: each was where the mean is, some cells aside, and
 /// the fix is as many cells aside again.
 void CeilingFilter::weigh_shifts(const Linearised& all, const std::vector<Seen>& seen,
@@ -418,7 +434,9 @@ void CeilingFilter::fuse(const Linearised& all) {
   x_[2] = wrap_angle(x_[2]);
   // Joseph's form: the placement errors of a perfect grid have no variance at all.
   const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(P_.rows(), P_.cols()) - K * all.H;
-  P_ = (left * P_ * left.transpose() + K * all.R * K.transpose()).eval();
+  const Eigen::MatrixXd P = left * P_ * left.transpose() + K * all.R * K.transpose();
+  // What rounding leaves of asymmetry grows from frame to frame, along directions without variance.
+  P_ = 0.5 * (P + P.transpose());
 }
 
 CeilingUpdate CeilingFilter::update(const std::vector<PatchImage>& patches) {
@@ -427,7 +445,7 @@ CeilingUpdate CeilingFilter::update(const std::vector<PatchImage>& patches) {
   const Pose2 start = point_of_linearisation(seen);
   seen = associated(seen, start);
   hold(seen, start);
-  const std::vector<Seen> passed = gated(seen, linearise(seen, state_at(start)));
+  const std::vector<Seen> passed = passed_gate(seen, start);
   if (passed.empty()) {
     if (++gated_ >= params_.max_gated) doubt();
     refresh_belief();

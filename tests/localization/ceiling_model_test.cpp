@@ -139,6 +139,41 @@ TEST(CeilingFilter, FindsTiltAndHeightFromThePatchesThatItSees) {
   EXPECT_EQ(filter.belief().status, BeliefStatus::tracking);
 }
 
+TEST(CeilingFilter, AThousandFramesLeaveItsCovarianceSymmetric) {
+  CeilingFilterParams params;
+  params.tilt_sigma = from_deg(0.3);
+  params.height_sigma = 0.005;
+  CeilingGrid grid;
+  grid.placement_m = 0.005;
+  grid.placement_turn = from_deg(1.3);
+  CeilingFilter filter(up_camera(), grid, params);
+  Pose2 robot{0.2, 0.1, 0.4};
+  filter.reset({}, near(robot, 0.05, 0.05));
+  for (int i = 1; i <= 1000; ++i) {
+    const OdometryIncrement u{filter.belief().stamp, Stamp::from_seconds(0.04 * i), 0.02, 0.0,
+                              0.004};
+    robot = move(robot, u);
+    filter.predict(u);
+    ASSERT_EQ(filter.update(images_about(up_camera(), {}, robot)), CeilingUpdate::fused) << i;
+    for (const Eigen::Matrix3d& P : {filter.belief().covariance, filter.camera_errors_covariance()})
+      ASSERT_LT((P - P.transpose()).norm(), 1e-12 * P.norm()) << i;
+  }
+  EXPECT_LT((filter.belief().pose.position() - robot.position()).norm(), 1e-3);
+}
+
+/// The variance of odometry follows the distance that it reads: next to nothing is uncertain at
+/// zero.
+TEST(CeilingFilter, ATickThatTheOdometryReadTooShortIsNoContradiction) {
+  constexpr double kSigma_m = 0.002;
+  CeilingFilter filter(up_camera(), {}, {});
+  const Pose2 start{0.2, 0.1, 0.4};
+  filter.reset({}, near(start, kSigma_m, kSigma_m));
+  const Pose2 robot = compose(start, {4.7 * kSigma_m, 0.0, 0.0});
+  filter.predict(OdometryIncrement{{}, Stamp::from_seconds(0.04), 0.0, 0.0, 0.0});
+  EXPECT_EQ(filter.update(images_about(up_camera(), {}, robot)), CeilingUpdate::fused);
+  EXPECT_LT((filter.belief().pose.position() - robot.position()).norm(), 0.1 * kSigma_m);
+}
+
 TEST(CeilingFilter, IsAmbiguousWithTheTruthAmongItsHypothesesAfterDrivingUnseenForHalfAPitch) {
   CeilingFilter filter(up_camera(), {}, {});
   filter.reset({}, near({0.0, 0.0, 0.0}, 0.01, 0.01));

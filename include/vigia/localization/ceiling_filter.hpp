@@ -95,6 +95,7 @@ class CeilingFilter {
   Eigen::VectorXd state_at(const Pose2& pose) const;
   Linearised linearise(const std::vector<Seen>& seen, const Eigen::VectorXd& at) const;
   std::vector<Seen> gated(const std::vector<Seen>& seen, const Linearised& all) const;
+  std::vector<Seen> passed_gate(const std::vector<Seen>& seen, const Pose2& start);
   Eigen::MatrixXd gain(const Linearised& all) const;
   Eigen::VectorXd fused_state(const Linearised& all) const;
   Eigen::VectorXd converged(const std::vector<Seen>& seen, const Pose2& start) const;
