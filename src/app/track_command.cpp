@@ -11,6 +11,8 @@
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -39,6 +41,12 @@ struct TrackOptions {
   int remember = 50;
   std::string mirror;
   double ray_step_deg = 3.0;
+  std::string patch_px;
+  std::string patch_m;
+  double rise_m = 0.0;
+  double pitch_m = 1.0;
+  std::string placement;
+  bool plain = false;
   std::string camera;
   std::string landmarks;
   double size_m = 0.0;
@@ -63,25 +71,20 @@ std::optional<Number> parsed(std::string_view text) {
   return value;
 }
 
+/// Two numbers with a colon between them.
+std::optional<std::pair<double, double>> parsed_pair(std::string_view text) {
+  const std::size_t colon = text.find(':');
+  if (colon == std::string_view::npos) return std::nullopt;
+  const auto first = parsed<double>(text.substr(0, colon));
+  const auto second = parsed<double>(text.substr(colon + 1));
+  if (!first || !second) return std::nullopt;
+  return std::pair{*first, *second};
+}
+
 struct RadiusRange {
   double min_px = 3.0;
   double max_px = std::numeric_limits<double>::infinity();
 };
-
-RadiusRange parse_radius(const std::string& text) {
-  if (text.empty()) return {};
-  const std::size_t colon = text.find(':');
-  const auto low = parsed<double>(std::string_view(text).substr(0, colon));
-  const auto high = colon == std::string::npos
-                        ? std::nullopt
-                        : parsed<double>(std::string_view(text).substr(colon + 1));
-  if (!low || !high || !(*low >= 3.0) || !(*high >= *low) || !(*high <= 1e5))
-    throw InputError(
-        fmt::format("--radius-px: found '{}', must be MIN:MAX, in pixels, with "
-                    "3 ≤ MIN ≤ MAX ≤ 100000",
-                    text));
-  return {*low, *high};
-}
 
 tracking::Polarity parse_polarity(const std::string& text) {
   if (text == "dark") return tracking::Polarity::dark;
@@ -139,10 +142,95 @@ tracking::FieldPictureParams make_field_scan(const TrackOptions& options) {
   return params;
 }
 
-TrackRun::Tracker make_tracker(const TrackOptions& options) {
-  if (scans_field(options)) return make_field_scan(options);
-  if (!options.mirror.empty() || options.output.panorama)
+RadiusRange parse_radius(const std::string& text) {
+  if (text.empty()) return {};
+  const auto range = parsed_pair(text);
+  if (!range || !(range->first >= 3.0) || !(range->second >= range->first) ||
+      !(range->second <= 1e5))
+    throw InputError(
+        fmt::format("--radius-px: found '{}', must be MIN:MAX, in pixels, with "
+                    "3 ≤ MIN ≤ MAX ≤ 100000",
+                    text));
+  return {range->first, range->second};
+}
+
+bool follows_ceiling(const TrackOptions& options) {
+  return options.tracker == "ceiling";
+}
+
+/// Length and width, LENGTH:WIDTH.
+std::pair<double, double> parse_patch(const char* option, const std::string& text, double min,
+                                      double max) {
+  const auto size = parsed_pair(text);
+  if (!size || !(size->second >= min) || !(size->first >= 1.5 * size->second) ||
+      !(size->first <= max))
+    throw InputError(
+        fmt::format("{}: found '{}', must be LENGTH:WIDTH with {} ≤ WIDTH, 1.5 WIDTH ≤ LENGTH ≤ {}",
+                    option, text, min, max));
+  return *size;
+}
+
+void parse_placement(const std::string& text, CeilingGrid& grid) {
+  const auto sigma = parsed_pair(text);
+  if (!sigma || !(sigma->first >= 0.0) || !(sigma->first <= 0.1) || !(sigma->second >= 0.0) ||
+      !(sigma->second <= 20.0))
+    throw InputError(
+        fmt::format("--placement: found '{}', must be METRES:DEGREES, 0–0.1 m and 0–20°", text));
+  grid.placement_m = sigma->first;
+  grid.placement_turn = from_deg(sigma->second);
+}
+
+/// The camera is given, so that there are poses.
+perception::CeilingView ceiling_view(const TrackOptions& options) {
+  if (!options.patch_px.empty())
+    throw InputError("--patch-px: with --camera the size in pixels follows from --patch-m");
+  if (!(options.rise_m > 0.0))
+    throw InputError("--camera: how far is the ceiling from the camera? Give --rise-m H");
+  perception::CeilingView view;
+  view.camera = read_camera(options.camera);
+  view.rise_m = options.rise_m;
+  view.grid.pitch_m = options.pitch_m;
+  view.grid.polarity = !options.plain;
+  if (!options.patch_m.empty())
+    std::tie(view.grid.length_m, view.grid.width_m) =
+        parse_patch("--patch-m", options.patch_m, 0.005, 0.5 * options.pitch_m);
+  if (!options.placement.empty()) parse_placement(options.placement, view.grid);
+  return view;
+}
+
+CeilingTrack make_ceiling(const TrackOptions& options) {
+  if (!options.ids.empty() || !options.radius_px.empty() || options.size_m > 0.0 ||
+      !options.landmarks.empty())
+    throw InputError(
+        "--tracker ceiling: patches have no --ids, --radius-px, --size or --landmarks");
+  if (!options.camera.empty()) return CeilingTrack(ceiling_view(options));
+  if (options.rise_m > 0.0 || !options.patch_m.empty())
+    throw InputError("--rise-m and --patch-m give poses only with --camera FILE");
+  if (options.patch_px.empty())
+    throw InputError(
+        "--tracker ceiling: how large are the patches in the pictures? Give --patch-px "
+        "LENGTH:WIDTH, or --camera FILE and --rise-m H");
+  tracking::PatchFinderParams params;
+  std::tie(params.length_px, params.width_px) =
+      parse_patch("--patch-px", options.patch_px, 3.0, 1000.0);
+  params.polarity = !options.plain;
+  return CeilingTrack(params);
+}
+
+void refuse_other_trackers_options(const TrackOptions& options) {
+  if (!scans_field(options) && (!options.mirror.empty() || options.output.panorama))
     throw InputError("--mirror and --panorama: are for --tracker field_scan");
+  if (!follows_ceiling(options) &&
+      (!options.patch_px.empty() || !options.patch_m.empty() || options.rise_m > 0.0 ||
+       options.plain || !options.placement.empty()))
+    throw InputError(
+        "--patch-px, --patch-m, --rise-m, --placement and --plain: are for --tracker ceiling");
+}
+
+TrackRun::Tracker make_tracker(const TrackOptions& options) {
+  refuse_other_trackers_options(options);
+  if (follows_ceiling(options)) return make_ceiling(options);
+  if (scans_field(options)) return make_field_scan(options);
   const std::vector<tracking::LandmarkCode> codes = parse_codes(options);
   const RadiusRange radius = parse_radius(options.radius_px);
   if (tracks_points(options)) {
@@ -175,6 +263,7 @@ LandmarkMap read_landmarks(const std::string& file) {
 }
 
 std::optional<LandmarkPoses> make_poses(const TrackOptions& options) {
+  if (follows_ceiling(options)) return std::nullopt;
   const bool sized = options.size_m > 0.0 || !options.landmarks.empty();
   if (options.camera.empty()) {
     if (sized) throw InputError("--size and --landmarks give poses only with --camera FILE");
@@ -274,6 +363,27 @@ void add_field(CLI::App& command, TrackOptions& options) {
                    "field_scan: unwrapped pictures in the folder panorama");
 }
 
+void add_ceiling_options(CLI::App& command, TrackOptions& options) {
+  command.add_option("--patch-px", options.patch_px,
+                     "ceiling: LENGTH:WIDTH of a patch in the pictures, px");
+  command
+      .add_option(
+          "--rise-m", options.rise_m,
+          "ceiling, with --camera: from the camera to the ceiling, m; gives the camera's pose")
+      ->check(CLI::Range(0.05, 100.0));
+  command.add_option("--patch-m", options.patch_m,
+                     "ceiling, with --camera: LENGTH:WIDTH of a patch, m (0.09:0.03)");
+  command
+      .add_option("--pitch-m", options.pitch_m, "ceiling, with --camera: from patch to patch, m")
+      ->check(CLI::Range(0.05, 100.0))
+      ->capture_default_str();
+  command.add_option(
+      "--placement", options.placement,
+      "ceiling, with --camera: METRES:DEGREES, σ of a patch's place beside its node of "
+      "the grid and of its direction");
+  command.add_flag("--plain", options.plain, "ceiling: the patches have no tongue at one end");
+}
+
 void add_pose(CLI::App& command, TrackOptions& options) {
   command.add_option("--camera", options.camera,
                      "Calibrated camera (ViSP's XML, OpenCV's YAML): gives poses");
@@ -309,6 +419,7 @@ void add_track(CLI::App& app, int& status) {
       app.add_subcommand("track", "Run a tracker on pictures, a video or a live camera");
   add_what(*command, *options);
   add_field(*command, *options);
+  add_ceiling_options(*command, *options);
   add_pose(*command, *options);
   add_output(*command, *options);
   command->callback([options, &status] { status = track(*options); });

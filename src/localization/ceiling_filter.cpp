@@ -21,6 +21,9 @@ constexpr double kNegligible = 1e-6;
 constexpr double kForgotten_px = 40.0;  // beyond the border
 constexpr double kPlain_px = 8.0;       // from the border: a patch there should be found
 constexpr int kIterations = 5;
+constexpr int kSingle =
+    16;  // frames with one patch, which may be none, that count as one with more
+constexpr double kFlowSlack_m = 0.01;
 constexpr double kAtRest = 1e-7;
 
 Eigen::Matrix2d world_to_robot(double theta) {
@@ -86,29 +89,54 @@ void CeilingFilter::predict(const OdometryIncrement& u) {
   move(vigia::move(from, u), F, G * control_covariance(u, params_.odometry) * G.transpose());
 }
 
-void CeilingFilter::predict(const ImageShift& shift, Stamp to) {
+CeilingFilter::Motion CeilingFilter::seen_motion(const ImageShift& shift) const {
   const Pose2 from = pose();
   const CeilingCamera camera = corrected(camera_, camera_errors());
-  const Pose2 motion = robot_motion(camera, shift);
+  Motion motion{robot_motion(camera, shift), MotionJacobian::Zero(), Eigen::Matrix3d::Zero()};
   const Eigen::Matrix2d R = Eigen::Rotation2Dd(from.theta).toRotationMatrix();
-  const Eigen::Vector2d step = R * motion.position();
-  MotionJacobian F = MotionJacobian::Zero();
-  F.leftCols<3>().setIdentity();
-  F.block<2, 1>(0, 2) = Eigen::Vector2d(-step.y(), step.x());
-  F.block<2, 1>(0, 5) = R * (camera.rise_m() * shift.shift);
+  const Eigen::Vector2d step = R * motion.step.position();
+  motion.F.leftCols<3>().setIdentity();
+  motion.F.block<2, 1>(0, 2) = Eigen::Vector2d(-step.y(), step.x());
+  motion.F.block<2, 1>(0, 5) = R * (camera.rise_m() * shift.shift);
   Eigen::Matrix3d G = Eigen::Matrix3d::Identity();
   G.topLeftCorner<2, 2>() = camera.rise_m() * R;
   Eigen::Matrix3d covariance = shift.covariance;
   covariance.diagonal().array() += params_.flow_floor * params_.flow_floor;
+  motion.Q = G * covariance * G.transpose();
+  return motion;
+}
+
+void CeilingFilter::predict(const ImageShift& shift, Stamp to) {
+  const Motion seen = seen_motion(shift);
+  const double reach = params_.max_speed_mps * (to - stamp_).seconds() + kFlowSlack_m;
+  if (seen.step.position().norm() > reach || reach > 0.5 * grid_.pitch_m) {
+    predict_unknown(to);
+    return;
+  }
   stamp_ = to;
-  move(compose(from, motion), F, G * covariance * G.transpose());
+  move(compose(pose(), seen.step), seen.F, seen.Q);
+}
+
+void CeilingFilter::predict(const OdometryIncrement& u, const ImageShift& shift) {
+  const Motion seen = seen_motion(shift);
+  const Eigen::Matrix3d G = move_jacobian_control(pose(), u);
+  const Eigen::Vector3d off = difference(compose(pose(), seen.step), vigia::move(pose(), u));
+  Eigen::Matrix3d S = G * control_covariance(u, params_.odometry) * G.transpose() + seen.Q;
+  // What tilt and height leave of the flow, and odometry's own variance where it reads nothing.
+  S.diagonal().array() += kFlowSlack_m * kFlowSlack_m;
+  if (off.dot(S.ldlt().solve(off)) > params_.gate) {
+    predict(u);
+    return;
+  }
+  stamp_ = u.to;
+  move(compose(pose(), seen.step), seen.F, seen.Q);
 }
 
 void CeilingFilter::predict_unknown(Stamp to) {
   // The robot may have kept one direction all the time: σ grows as the time, not as its root.
   const double before = unknown_s_;
   unknown_s_ += (to - stamp_).seconds();
-  const double reach = 0.5 * params_.max_speed_mps;
+  const double reach = params_.max_speed_mps / 3.0;
   const double turn = 2.0 * params_.max_speed_mps;  // rad/s, of a robot half a metre wide
   const double grown = unknown_s_ * unknown_s_ - before * before;
   Eigen::Matrix3d Q = Eigen::Matrix3d::Zero();
@@ -199,14 +227,15 @@ bool CeilingFilter::in_sight(const CeilingCell& cell, const Pose2& at, double ma
   return true;
 }
 
-/// Keeps the placement errors of the cells in view, forgets the others, admits the new ones. Where
-/// several shifts of the prediction are possible, a patch's cell may be another than it was.
-void CeilingFilter::hold(const std::vector<Seen>& seen, const Pose2& at) {
+/// Keeps the placement errors of the cells in view, forgets the others, admits the new ones.
+/// @p afresh: where several shifts of the prediction are possible, a patch's cell may be another
+/// than it was.
+void CeilingFilter::hold(const std::vector<Seen>& seen, const Pose2& at, bool afresh) {
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < kCommon; ++i) kept.push_back(i);
   std::map<CeilingCell, Eigen::Index> places;
-  cells_unsure_ = open() && !patches_.empty();
-  if (open()) {
+  cells_unsure_ = afresh && !patches_.empty();
+  if (afresh) {
     judged_.clear();
   } else {
     for (const auto& [cell, place] : patches_) {
@@ -442,12 +471,14 @@ void CeilingFilter::fuse(const Linearised& all) {
 CeilingUpdate CeilingFilter::update(const std::vector<PatchImage>& patches) {
   std::vector<Seen> seen = see(patches);
   if (seen.empty()) return CeilingUpdate::none_seen;
+  const int contradicts = seen.size() > 1 ? kSingle : 1;
   const Pose2 start = point_of_linearisation(seen);
   seen = associated(seen, start);
-  hold(seen, start);
+  hold(seen, start, open());
   const std::vector<Seen> passed = passed_gate(seen, start);
   if (passed.empty()) {
-    if (++gated_ >= params_.max_gated) doubt();
+    gated_ += contradicts;
+    if (gated_ >= kSingle * params_.max_gated) doubt();
     refresh_belief();
     return CeilingUpdate::gated;
   }
@@ -465,14 +496,24 @@ CeilingUpdate CeilingFilter::update(const std::vector<PatchImage>& patches) {
   return CeilingUpdate::fused;
 }
 
-void CeilingFilter::relinearise(const Pose2& pose, const CeilingCameraErrors& errors,
-                                const std::map<CeilingCell, Eigen::Vector3d>& placement) {
-  x_.head<3>() = pose.vector();
-  x_.segment<3>(3) = errors.vector();
+void CeilingFilter::place(const CeilingTruthState& truth) {
+  x_.setZero();
+  x_.head<3>() = truth.pose.vector();
+  x_.segment<3>(3) = truth.errors.vector();
   for (const auto& [cell, place] : patches_)
-    if (const auto found = placement.find(cell); found != placement.end())
+    if (const auto found = truth.placement.find(cell); found != truth.placement.end())
       x_.segment<3>(place) = found->second;
   refresh_belief();
+}
+
+void CeilingFilter::inform(const CeilingTruthState& truth, const std::vector<PatchImage>& patches) {
+  place(truth);
+  const std::vector<Seen> seen = associated(see(patches), truth.pose);
+  if (seen.empty()) return;
+  hold(seen, truth.pose, false);
+  place(truth);
+  fuse(linearise(seen, x_));
+  place(truth);
 }
 
 void CeilingFilter::refresh_belief() {

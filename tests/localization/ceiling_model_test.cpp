@@ -174,6 +174,48 @@ TEST(CeilingFilter, ATickThatTheOdometryReadTooShortIsNoContradiction) {
   EXPECT_LT((filter.belief().pose.position() - robot.position()).norm(), 0.1 * kSigma_m);
 }
 
+/// How the picture of the ceiling moves when the camera does by @p step, well measured.
+ImageShift shift_of(const Pose2& step) {
+  ImageShift shift;
+  shift.shift = step.position() / up_camera().rise_m();
+  shift.turn = step.theta;
+  shift.covariance = 1e-8 * Eigen::Matrix3d::Identity();
+  return shift;
+}
+
+TEST(CeilingFilter, BelievesTheFlowThatTheOdometryBearsOutAndNoOther) {
+  CeilingCamera camera = up_camera();
+  camera.rMc.translation() = Eigen::Vector3d(0.0, 0.0, 0.5);
+  CeilingFilterParams params;
+  params.max_speed_mps = 1.0;
+  CeilingFilter filter(camera, {}, params);
+  const Pose2 start{0.2, 0.1, 0.0};
+  const OdometryIncrement u{{}, Stamp::from_seconds(0.2), 0.0, 0.1, 0.0};
+  const auto after = [&](const auto&... motion) {
+    filter.reset({}, near(start, 1e-3, 1e-3));
+    filter.predict(motion...);
+    return filter.belief();
+  };
+  EXPECT_NEAR(after(u, shift_of({0.11, 0.0, 0.0})).pose.x, 0.31, 1e-6);
+  EXPECT_NEAR(after(u, shift_of({-0.3, 0.1, 0.2})).pose.x, 0.30, 1e-9);
+  const Belief fast = after(shift_of({0.3, 0.0, 0.0}), u.to);
+  EXPECT_NEAR(fast.pose.x, 0.2, 1e-9);
+  EXPECT_GT(fast.position_sigma(), 0.05);
+}
+
+TEST(CeilingFilter, OnePatchTooManyIsNoKidnapping) {
+  CeilingFilter filter(up_camera(), {}, {});
+  const Pose2 robot{0.2, 0.1, 0.4};
+  filter.reset({}, near(robot, 0.002, 0.002));
+  const PatchImage spurious = image_of(up_camera(), {}, robot, {0.4, 0.3, 0.9});
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(filter.update({spurious}), CeilingUpdate::gated);
+  EXPECT_EQ(filter.belief().status, BeliefStatus::tracking);
+  auto elsewhere = images_about(up_camera(), {}, {0.5, 0.5, 0.9});
+  ASSERT_GT(elsewhere.size(), 1U);
+  for (int i = 0; i < 3; ++i) filter.update(elsewhere);
+  EXPECT_EQ(filter.belief().status, BeliefStatus::ambiguous);
+}
+
 TEST(CeilingFilter, IsAmbiguousWithTheTruthAmongItsHypothesesAfterDrivingUnseenForHalfAPitch) {
   CeilingFilter filter(up_camera(), {}, {});
   filter.reset({}, near({0.0, 0.0, 0.0}, 0.01, 0.01));
@@ -205,7 +247,7 @@ TEST(CeilingFilter, PatchesBeyondTheGridsEdgeSettleWhichCellItIs) {
     CeilingFilter filter(up_camera(), edge ? grid : CeilingGrid{}, {});
     filter.reset({}, near({0.0, 0.0, 0.0}, 0.01, 0.01));
     filter.update(images_about(up_camera(), {}, {0.0, 0.0, 0.0}, grid));
-    filter.predict_unknown(Stamp::from_seconds(2.5));
+    filter.predict_unknown(Stamp::from_seconds(3.75));
     const Pose2 robot{0.0, 0.0, 0.0};
     ASSERT_EQ(filter.update(images_about(up_camera(), {}, robot, grid)), CeilingUpdate::fused);
     double right = 0.0;
