@@ -77,7 +77,8 @@ std::optional<FloorOfPixel> floor_of_pixel(const MirrorOnRobot& camera, const Ve
   floor.p_r = (eye + t * d).head<2>();
   // A longer focal length, or a middle farther on, shows at a pixel what was nearer to the old
   // middle.
-  floor.dp_derrors.col(kMirrorScale) = -dp_duv * (uv - Vector2d(camera.mirror.u0, camera.mirror.v0));
+  floor.dp_derrors.col(kMirrorScale) =
+      -dp_duv * (uv - Vector2d(camera.mirror.u0, camera.mirror.v0));
   floor.dp_derrors.col(kTiltX) = dp_ddc * Vector3d::UnitX().cross(*d_c);
   floor.dp_derrors.col(kTiltY) = dp_ddc * Vector3d::UnitY().cross(*d_c);
   floor.dp_derrors.col(kCentreU) = -dp_duv.col(0);
