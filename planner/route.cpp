@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "vigia/core/random.hpp"
+#include "vigia/planner/tight_place.hpp"
 
 namespace vigia::planner {
 namespace {
@@ -121,6 +122,19 @@ Route plan_route(const FloorPlan& plan, const std::vector<Vector2d>& waypoints,
   route.path = Path(points).resampled(params.spacing_m);
   route.status = RouteStatus::found;
   return route;
+}
+
+TightPlace tightest_place(const FloorPlan& plan, const Path& path, double robot_radius_m,
+                          double ends_m) {
+  TightPlace tightest;
+  tightest.beside_m = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < path.points().size(); ++i) {
+    const double station = path.stations()[i];
+    if (station < ends_m || station > path.length() - ends_m) continue;
+    const double beside_m = plan.clearance(path.points()[i]) - robot_radius_m;
+    if (beside_m < tightest.beside_m) tightest = {path.points()[i], station, beside_m};
+  }
+  return tightest;
 }
 
 }  // namespace vigia::planner

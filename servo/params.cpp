@@ -30,7 +30,10 @@ void describe(ParamVisitor& v, GazeParams& p) {
   v.angle("look_angle_deg", p.look_angle, {0.0, 10.0},
           About("σ of the head, for the zoom at which the landmark is still in the image")
               .otherwise("that of `localization.noise`"));
-  v.number("aim_gain", p.aim_gain, {0.1, 50.0}, About("of a slew's end").in("1/s"));
+  v.number("aim_gain", p.aim_gain, {0.1, 50.0},
+           About("of a slew's end; more than the whole error in a tick is refused")
+               .in("1/s")
+               .otherwise("10, or 0.8 of the error in a tick where that is less"));
 }
 
 }  // namespace vigia::servo

@@ -1,4 +1,5 @@
 #include "commands.hpp"
+#include "plan_table.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -53,8 +54,9 @@ std::string check_campaign(const CheckOptions& options) {
 
 std::string check_mission(const CheckOptions& options) {
   const auto setup = mission::load_mission(options.file, options.overrides);
-  return fmt::format("\"{}\", {:.1f} m, policy {}", setup.name, setup.path.length(),
-                     setup.look.policy);
+  const std::string tightest = tightest_text(setup);
+  return fmt::format("\"{}\", {:.1f} m, policy {}{}{}", setup.name, setup.path.length(),
+                     setup.look.policy, tightest.empty() ? "" : "; ", tightest);
 }
 
 std::string check_rules(const std::string& file) {

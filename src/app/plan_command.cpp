@@ -66,6 +66,7 @@ int plan(PlanOptions options) {
     return 0;
   }
   for (const PlanTable& table : tables) print(table);
+  fmt::print("{}\n", tightest_text(setup));
   return 0;
 }
 

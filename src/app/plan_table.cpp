@@ -1,6 +1,7 @@
 #include "plan_table.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 #include "vigia/core/error.hpp"
 #include "vigia/mission/planning_parts.hpp"
 #include "vigia/planner/look_policy.hpp"
+#include "vigia/planner/tight_place.hpp"
 #include "vigia/report/plan_picture.hpp"
 
 namespace vigia::app {
@@ -104,6 +106,14 @@ PlanTable make_plan(const mission::MissionSetup& setup, const std::string& polic
     if (policy != "fuzzy") take_choices(other, plan.areas[i], table.rows.back());
   }
   return table;
+}
+
+std::string tightest_text(const mission::MissionSetup& setup) {
+  const auto place =
+      planner::tightest_place(setup.world.plan, setup.path, setup.robot.robot.radius_m);
+  if (!std::isfinite(place.beside_m)) return "";
+  return fmt::format("tightest place: {:.3f} m beside the robot at [{:.2f}, {:.2f}], {:.1f} m on",
+                     place.beside_m, place.at.x(), place.at.y(), place.station_m);
 }
 
 void draw_plan(const PlanTable& table, const mission::MissionSetup& setup,

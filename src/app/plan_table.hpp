@@ -35,6 +35,10 @@ struct PlanTable {
 /// preselected are all those that it named.
 PlanTable make_plan(const mission::MissionSetup& setup, const std::string& policy);
 
+/// How near the route comes to what the map knows, and where: a line's text, or nothing in a world
+/// without walls.
+std::string tightest_text(const mission::MissionSetup& setup);
+
 /// Draws the plan on its floor: control areas, the chosen landmarks and the sight lines to them.
 void draw_plan(const PlanTable& table, const mission::MissionSetup& setup,
                const std::filesystem::path& png);

@@ -4,11 +4,24 @@
 
 #include "vigia/mission/planning_parts.hpp"
 #include "vigia/planner/apparent_size.hpp"
+#include "vigia/servo/slew_law.hpp"
 
 namespace vigia::mission {
 namespace {
 
 constexpr int kMostDoublings = 4;
+constexpr double kSearch_s = 2.0;  // of a look, once head and zoom are there
+
+/// What a look may take: as long as the mission says, and no less than head and zoom need from end
+/// to end and the search after that.
+Duration time_for_look(const MissionSetup& setup) {
+  const HeadLimits& head = setup.robot.robot.head_limits;
+  const auto& zoom = setup.robot.zoom();
+  const double turn_s = servo::slew_time(head.pan_max - head.pan_min, head.rate, head.acceleration);
+  const double zoom_s = (zoom.max_zoom_mm() - zoom.min_zoom_mm()) / head.zoom_rate_mm_s;
+  return Duration::from_seconds(
+      std::max(setup.look.timeout_s, std::max(turn_s, zoom_s) + kSearch_s));
+}
 
 }  // namespace
 
@@ -54,7 +67,7 @@ std::optional<LookScheduler::Decision> LookScheduler::choose(Stamp now, const Be
   order.landmark = choice->landmark;
   order.zoom_mm = choice->zoom_mm;
   order.issued = now;
-  order.expires = now + Duration::from_seconds(setup_.look.timeout_s);
+  order.expires = now + time_for_look(setup_);
   order.dwell_s = setup_.look.dwell_s;
   order.radius_px =
       planner::wanted_radius(*setup_.world.landmarks.find(choice->landmark), head_model_);

@@ -18,8 +18,10 @@ void describe_fuzzy(ParamVisitor& v, LookParams& p) {
 void describe_look(ParamVisitor& v, LookParams& p) {
   v.number("period_s", p.period_s, {0.0, 10.0}, "how often the planner is asked");
   v.number("dwell_s", p.dwell_s, {0.0, 60.0}, "how long a landmark is observed once tracked");
-  v.number("timeout_s", p.timeout_s, {0.1, 600.0},
-           "an order without a feature by then has expired");
+  v.number(
+      "timeout_s", p.timeout_s, {0.1, 600.0},
+      "an order without a feature by then has expired; a slow head or zoom has what it needs from "
+      "end to end, and 2 s, if that is longer");
   v.number("radius_px", p.radius_px, {4.0, 200.0}, "apparent radius of a disc that the zoom holds");
   v.number("fill", p.fill, {0.05, 0.95},
            "share of half the image's height that the zoom fills with a pattern or tag");

@@ -100,8 +100,9 @@ Demand PtzAttention::plan(const Readings& readings, const Belief& belief, double
       (nothing_to_ask && different_failed() > 1) || held_up(readings, nothing_to_ask);
   if (demand.contradicted) return demand;
 
-  // Where there is nothing to look at, standing helps nobody.
-  demand.stop = suspicious && (!idle || decision);
+  // Where there is nothing to look at, standing helps nobody, unless no ring sees the walls.
+  const bool blind = !failed_.empty() && !setup_.robot.range_ring;
+  demand.stop = suspicious && (!idle || decision || blind);
   record_limits(wanted, demand.stop, belief.position_sigma());
   stopped_ = demand.stop;
   going.standing = demand.stop;

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "vigia/core/key_reference.hpp"
 #include "vigia/core/noise_params.hpp"
 #include "vigia/localization/params.hpp"
 #include "vigia/mission/localizers.hpp"
 #include "vigia/pilot/params.hpp"
 #include "vigia/planner/params.hpp"
+#include "vigia/planner/tight_place.hpp"
 #include "vigia/servo/params.hpp"
 #include "vigia/sim/params.hpp"
 #include "vigia/tracking/trackers.hpp"
@@ -19,6 +22,8 @@ namespace {
 
 const Bounds kMetres{-1e4, 1e4};
 constexpr double kLeastRoute_m = 0.01;
+/// What the pilot's executor keeps free beside the robot.
+constexpr double kBeside_m = 0.025;
 
 void describe_world(ParamVisitor& v, MissionSetup& setup) {
   describe(v, setup.world);
@@ -90,12 +95,24 @@ void describe_route(ParamVisitor& v, MissionSetup& setup) {
             "of the route planner: one route for every seed of the mission");
 }
 
+/// A robot may start and end where it touches a wall all but. On the way the pilot would not pass.
+void require_room_on_the_way(const MapReader& route, const MissionSetup& setup, const Path& path) {
+  const double radius = setup.route.robot_radius_m;
+  const auto tightest = planner::tightest_place(setup.world.plan, path, radius, 2.0 * radius);
+  if (tightest.beside_m < kBeside_m)
+    throw route.error("goal_m",
+                      fmt::format("too narrow for the robot: {:.3f} m beside it at [{:.2f}, "
+                                  "{:.2f}], and the pilot keeps {:g} m from what it sees",
+                                  tightest.beside_m, tightest.at.x(), tightest.at.y(), kBeside_m));
+}
+
 /// @p route: its map in the file.
 void plan_mission_route(const MapReader& route, MissionSetup& setup) {
   setup.route.robot_radius_m = setup.robot.robot.radius_m;
   const planner::Route found =
       planner::plan_route(setup.world.plan, setup.waypoints, setup.route, setup.route_seed);
   if (found.status != planner::RouteStatus::found) report_route_failure(route, found);
+  require_room_on_the_way(route, setup, found.path);
   setup.path = found.path;
 }
 
@@ -197,6 +214,24 @@ void describe_planner(ParamVisitor& v, MissionSetup& setup) {
             "found " + std::to_string(*fixed) + ", which is no landmark of the world");
 }
 
+/// A rate of more than the whole error in a tick swings about its goal.
+void require_steady(ParamVisitor& v, const char* what, double gain, double tick_s) {
+  v.require(gain * tick_s <= 1.0, "gaze",
+            fmt::format("{} {:g} /s takes more than the whole error away in a tick of {:g} s and "
+                        "swings: at rate_hz {:g} it may be {:g} at most",
+                        what, gain, tick_s, 1.0 / tick_s, 1.0 / tick_s));
+}
+
+/// The gains' defaults leave a slow loop a fifth of its error.
+void describe_gaze(ParamVisitor& v, MissionSetup& setup) {
+  constexpr double kShareInATick = 0.8;
+  setup.gaze.aim_gain = std::min(setup.gaze.aim_gain, kShareInATick / setup.tick_s);
+  setup.gaze.servo.gain = std::min(setup.gaze.servo.gain, kShareInATick / setup.tick_s);
+  v.map("gaze", setup.gaze, "how head and zoom follow an order");
+  require_steady(v, "aim_gain", setup.gaze.aim_gain, setup.tick_s);
+  require_steady(v, "servo.gain", setup.gaze.servo.gain, setup.tick_s);
+}
+
 void describe_pilot(ParamVisitor& v, MissionSetup& setup) {
   describe(v, setup.pilot.follower);
   v.where(setup.robot.range_ring.has_value(), "the robot has a `range_ring`", [&] {
@@ -241,7 +276,7 @@ void describe(ParamVisitor& v, MissionSetup& setup) {
   v.map("planner", "when and where the robot looks", [&] { describe_planner(v, setup); });
   require_cameras(v, setup);
   setup.gaze.look_angle = setup.noise.sensor.look_angle;
-  v.map("gaze", setup.gaze, "how head and zoom follow an order");
+  describe_gaze(v, setup);
   v.map("pilot", "how the base follows the route", [&] { describe_pilot(v, setup); });
   v.map("recovery", setup.recovery, "what a lost robot does");
   v.map("route", "the drive", [&] { describe_route(v, setup); });

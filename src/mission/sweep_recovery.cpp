@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "vigia/core/plane_geometry.hpp"
-#include "vigia/localization/pattern_fix.hpp"
 
 namespace vigia::mission {
 namespace {
@@ -84,6 +83,11 @@ RecoveryStep SweepRecovery::begin(const Readings& readings) {
 RecoveryStep SweepRecovery::step(const RecoveryInput& input) {
   const Readings& readings = input.readings;
   RecoveryStep step;
+  if (answer_) {
+    step.commands.head = head_;
+    if (readings.now >= answer_->from) conclude(input, step);
+    return step;
+  }
   if (exploration_) {
     if (explore(input, step)) return step;
     exploration_.reset();
@@ -95,7 +99,8 @@ RecoveryStep SweepRecovery::step(const RecoveryInput& input) {
   if (look_around_.ready(readings.now, readings.head, exposed)) {
     process(delivery->capture());
     if (!look_around_.next()) {
-      finish_sweep(input, step);
+      think(input);
+      step.commands.head = head_;
       return step;
     }
     step.new_look = true;
@@ -117,26 +122,18 @@ const Delivery* SweepRecovery::delivered(const std::vector<Delivery>& deliveries
 
 void SweepRecovery::process(const perception::Capture& capture) {
   sweep_.views.push_back(capture.shot);
-  for (const Observation& observation : eye_.survey(capture)) {
-    if (const auto* disc = std::get_if<EllipseObservation>(&observation))
-      sweep_.sightings.push_back(*disc);
-    if (const auto* points = std::get_if<PointsObservation>(&observation)) read_code(*points);
-  }
+  for (Observation& observation : eye_.survey(capture))
+    sweep_.sightings.push_back(std::move(observation));
 }
 
-/// A pattern says who it is and where the robot stands: the surest one of a sweep counts.
-void SweepRecovery::read_code(const PointsObservation& seen) {
-  localization::PatternFixLocalizer fix(setup_.world.landmarks, setup_.on_ground(),
-                                        pattern_fix_params(setup_));
-  fix.reset(shot_of(seen).stamp, {});
-  if (fix.update(seen).status != localization::UpdateStatus::fused) return;
-  const Prior found{fix.belief().pose, fix.belief().covariance};
-  if (!by_code_ || found.covariance.trace() < by_code_->covariance.trace()) by_code_ = found;
+void SweepRecovery::think(const RecoveryInput& input) {
+  head_ = {};
+  const auto pose = relocalize(input.belief);
+  answer_ = Answer{pose, input.readings.now + Duration::from_seconds(thought_s_)};
 }
 
-void SweepRecovery::finish_sweep(const RecoveryInput& input, RecoveryStep& step) {
-  step.commands.head = head_;
-  step.pose = relocalize(input.belief);
+void SweepRecovery::conclude(const RecoveryInput& input, RecoveryStep& step) {
+  step.pose = std::exchange(answer_, std::nullopt)->pose;
   if (step.pose) {
     step.status = RecoveryStatus::found;
     knew_ = true;
@@ -162,10 +159,13 @@ std::optional<Prior> SweepRecovery::relocalize(const Belief& belief) {
   const localization::Sweep sweep = std::exchange(sweep_, {});
   const auto found = relocalizer_.solve(sweep, place_prior(belief));
   found_ = found.hypotheses;
+  thought_s_ = found.modelled_s;
   log_.record(EventKind::looked_around,
               {{"sightings", static_cast<double>(sweep.sightings.size())},
-               {"hypotheses", static_cast<double>(found.hypotheses.size())}});
-  if (auto here = std::exchange(by_code_, std::nullopt)) return here;
+               {"hypotheses", static_cast<double>(found.hypotheses.size())},
+               {"weight", found_.empty() ? 0.0 : found_.front().weight},
+               {"fits", static_cast<double>(found.fits)},
+               {"took_s", found.modelled_s}});
   if (auto here = best_of(found)) return here;
   if (!knew_ || alternatives_ || !found_.empty()) return std::nullopt;
   // The alarm may have been a false one: what was believed helps where too little is seen.

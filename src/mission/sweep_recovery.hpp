@@ -12,10 +12,10 @@
 namespace vigia::mission {
 
 /// The recovery of a robot with a head: it stands still and looks around, and what it sees, all at
-/// once, tells where it is: a code alone, or the discs together. Where too little is seen, or where
-/// what is seen fits several places, it goes to where the range ring has most room, and looks
-/// around there; what fitted before weighs the places. One of several is never taken for the only
-/// one.
+/// once, tells where it is: discs, patterns and tags together. It stands still until the time that
+/// the search takes has passed. Where too little is seen, or where what is seen fits several
+/// places, it goes to where the range ring has most room, and looks around there; what fitted
+/// before weighs the places. One of several is never taken for the only one.
 class SweepRecovery : public Recovery {
  public:
   /// @p eye: of the camera that the head turns. All references outlive the recovery.
@@ -35,8 +35,9 @@ class SweepRecovery : public Recovery {
   /// What the eye's camera has delivered that was exposed in the present look.
   const Delivery* delivered(const std::vector<Delivery>& deliveries) const;
   void process(const perception::Capture& capture);
-  void read_code(const PointsObservation& seen);
-  void finish_sweep(const RecoveryInput& input, RecoveryStep& step);
+  /// Searches, and has the answer once the time for it has passed.
+  void think(const RecoveryInput& input);
+  void conclude(const RecoveryInput& input, RecoveryStep& step);
   std::optional<Prior> relocalize(const Belief& belief);
   localization::PlacePrior place_prior(const Belief& belief) const;
   bool begin_exploration(const RecoveryInput& input);
@@ -49,7 +50,13 @@ class SweepRecovery : public Recovery {
   localization::Relocalizer relocalizer_;
   LookAround look_around_;
   localization::Sweep sweep_;
-  std::optional<Prior> by_code_;  ///< what a pattern of the sweep said
+  /// What the last sweep has shown, from a time on.
+  struct Answer {
+    std::optional<Prior> pose;
+    Stamp from;
+  };
+  std::optional<Answer> answer_;
+  double thought_s_ = 0.0;  ///< by the last search, in modelled time
   std::optional<Exploration> exploration_;
   /// What the sweep before the last exploration left open, and what was believed then: the
   /// odometry from there carries the hypotheses on.

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <gtest/gtest.h>
 
@@ -84,6 +85,39 @@ TEST(Recovery, TwoLandmarksThatAreNotThereSufficeWhereThereIsNoThirdToLookAt) {
   EXPECT_EQ(std::count(log.kinds.begin(), lost, EventKind::expired), 2);
 }
 
+/// The fastest that a robot drives from a second after its first failed look until it says lost.
+class Suspicion : public Listener {
+ public:
+  void on_event(const Event& event) override {
+    if (event.kind == EventKind::expired && !since_s) since_s = event.stamp.seconds();
+    if (event.kind == EventKind::lost) lost = true;
+  }
+  void on_tick(const Tick& tick) override {
+    const double now_s = tick.estimator.now.seconds();
+    if (since_s && !lost && now_s > *since_s + 1.0)
+      fastest_mps = std::max(fastest_mps, std::abs(tick.base_command.v));
+  }
+  std::optional<double> since_s;
+  bool lost = false;
+  double fastest_mps = 0.0;
+};
+
+TEST(Recovery, WithoutARingARobotDoesNotDriveOnWhereALandmarkWasNotAndThereIsNoOther) {
+  const std::string disc =
+      "world.landmarks=[{id: 0, kind: disc, centre_m: [3.4, 3.2, 1.6], normal_deg: 180, radius_m: "
+      "0.1}]";
+  MissionSetup setup =
+      load_mission(std::string(VIGIA_SOURCE_DIR) + "/config/missions/armingol-room.yaml",
+                   {disc, "disturbances.missing_landmarks={probability: 1, at_most_one_in: 1}",
+                    "planner.exclude_s=60", "timeout_s=30"});
+  setup.robot.range_ring.reset();
+  Suspicion blind;
+  run_mission(setup, 1, {&blind});
+  ASSERT_TRUE(blind.since_s);
+  EXPECT_TRUE(blind.lost);
+  EXPECT_EQ(blind.fastest_mps, 0.0);
+}
+
 TEST(Recovery, ARobotThatSeesNoLandmarkGivesUpAndSaysSo) {
   MissionSetup setup = mission_with_prior_off_by({});
   // A belief that is lost at once, and a sweep that looks at the floor.
@@ -154,14 +188,63 @@ TEST(Recovery, ARobotThatWokeAmongPatternsFindsItselfByTheirCodes) {
     Search search;
     run_mission(setup, seed, {&search});
     EXPECT_LT(search.lost_s, 0.1) << seed;
-    // No disc of the map could have told it.
-    ASSERT_EQ(search.hypotheses, std::vector<double>{0.0}) << seed;
+    ASSERT_EQ(search.hypotheses, std::vector<double>{1.0}) << seed;
     ASSERT_EQ(search.distance2.size(), 1U) << seed;
     EXPECT_LT(search.distance2[0], kFar2) << seed;
     EXPECT_LT(search.found_sigma_m, 0.1) << seed;
     EXPECT_FALSE(search.searching) << seed;
     EXPECT_EQ(search.most_in_sweep_mps, 0.0) << seed;
   }
+}
+
+TEST(Recovery, ARobotThatWokeAmongTagsFindsItselfByThem) {
+  const MissionSetup setup = woken("tag-room.yaml", {"timeout_s=15"});
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Search search;
+    run_mission(setup, seed, {&search});
+    ASSERT_EQ(search.distance2.size(), 1U) << seed;
+    EXPECT_LT(search.distance2[0], kFar2) << seed;
+    EXPECT_FALSE(search.searching) << seed;
+  }
+}
+
+TEST(Recovery, ARobotThatWokeAmongDiscsPatternsAndTagsFindsItselfByAllOfThem) {
+  const MissionSetup setup = woken("mixed-room.yaml", {"timeout_s=15"});
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Search search;
+    run_mission(setup, seed, {&search});
+    ASSERT_EQ(search.distance2.size(), 1U) << seed;
+    EXPECT_LT(search.distance2[0], kFar2) << seed;
+    EXPECT_FALSE(search.searching) << seed;
+  }
+}
+
+TEST(Recovery, TheTimeThatASearchTakesPassesInTheSimulation) {
+  const MissionSetup setup = woken("armingol-room.yaml", {"timeout_s=15"});
+  double looked_s = 0.0;
+  double took_s = 0.0;
+  double recovered_s = 0.0;
+  class Times : public Listener {
+   public:
+    Times(double& looked, double& took, double& recovered)
+        : looked_(looked), took_(took), recovered_(recovered) {}
+    void on_event(const Event& event) override {
+      if (event.kind == EventKind::recovered) recovered_ = event.stamp.seconds();
+      if (event.kind != EventKind::looked_around) return;
+      looked_ = event.stamp.seconds();
+      for (const auto& [name, value] : event.numbers)
+        if (name == "took_s") took_ = value;
+    }
+
+   private:
+    double& looked_;
+    double& took_;
+    double& recovered_;
+  } times(looked_s, took_s, recovered_s);
+  run_mission(setup, 1, {&times});
+  EXPECT_GT(took_s, 0.0);
+  EXPECT_GE(recovered_s - looked_s, took_s);
+  EXPECT_LE(recovered_s - looked_s, took_s + setup.tick_s + 1e-9);
 }
 
 TEST(Recovery, WhereTooLittleIsSeenItGoesToWhereMoreIs) {

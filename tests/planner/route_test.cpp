@@ -11,6 +11,7 @@
 
 #include "vigia/core/angle.hpp"
 #include "vigia/core/random.hpp"
+#include "vigia/planner/tight_place.hpp"
 
 namespace vigia::planner {
 namespace {
@@ -53,6 +54,18 @@ TEST(Route, KeepsTheWholeClearanceWhereThereIsRoom) {
   const Route route = route_in(plan, {{1.0, 1.0}, {6.0, 6.0}, {11.0, 6.0}, {11.0, 1.0}});
   ASSERT_EQ(route.status, RouteStatus::found);
   EXPECT_GE(path_clearance(plan, route.path), 0.45 - 1e-9);
+}
+
+TEST(Route, TheTightestPlaceIsTheDoor) {
+  // A door of 0.8 m.
+  const FloorPlan plan(kOutline, 2.8,
+                       {{{6.0, 0.0}, {6.0, 3.0}, 2.8}, {{6.0, 3.8}, {6.0, 7.0}, 2.8}}, {});
+  const Route route = route_in(plan, {{2.0, 3.4}, {10.0, 3.4}});
+  ASSERT_EQ(route.status, RouteStatus::found);
+  const TightPlace door = tightest_place(plan, route.path, RouteParams{}.robot_radius_m);
+  EXPECT_NEAR(door.at.x(), 6.0, 0.05);
+  EXPECT_NEAR(door.station_m, 4.0, 0.05);
+  EXPECT_NEAR(door.beside_m, 0.1, 0.005);
 }
 
 TEST(Route, BeginsAtTheStartPassesTheViasAndEndsAtTheGoal) {

@@ -147,6 +147,7 @@ TEST_F(Program, ChecksTheMissionThatItComesWith) {
   const auto result = vigia("check " + kMission);
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_THAT(result.out, HasSubstr("armingol-room"));
+  EXPECT_THAT(result.out, HasSubstr("m beside the robot at ["));
 }
 
 TEST_F(Program, ChecksEveryKindOfFileThatItComesWith) {
@@ -381,6 +382,11 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         WrongMission{"UnknownPolicy", "planner.policy=oracel", "nearest"},
         WrongMission{"FixedWithoutLandmark", "planner.policy=fixed", "fixed_landmark"},
+        WrongMission{"GazeThatSwings", "gaze.aim_gain=30", "it may be 25 at most"},
+        WrongMission{
+            "DoorTooNarrow",
+            "world.walls=[{from_m: [8, 0], to_m: [8, 3]}, {from_m: [8, 3.58], to_m: [8, 7]}]",
+            "too narrow for the robot"},
         WrongMission{"StartInTheWall", "start.position_m=[0.05, 1.0]", "does not fit"},
         WrongMission{"StartOutside", "start.position_m=[-3, 1]", "does not fit"},
         WrongMission{"GoalInTheWall", "route.goal_m=[11.99, 6.99]", "does not fit"},
