@@ -79,6 +79,14 @@ int dof_of(const Linearised<Rows>& seen) {
   return seen.rank + std::max(0, seen.scatter_dof);
 }
 
+/// Whether one of the landmarks says who it is.
+template <typename Explained>
+bool is_named(const std::vector<Explained>& explained) {
+  return std::any_of(explained.begin(), explained.end(), [](const Explained& one) {
+    return std::holds_alternative<PointsMatch>(one.match);
+  });
+}
+
 /// The landmark as a disc of the size of all that is seen of it.
 Landmark outline(const Landmark& landmark) {
   return {landmark.id, landmark.wMl, DiscShape{extent_radius(landmark)}};
@@ -223,10 +231,13 @@ Relocalization Relocalizer::weighed(Task task, Relocalization result) const {
     const double weight = std::exp(h.log_weight - found.front().log_weight) / sum;
     result.hypotheses.push_back({h.fit.pose, h.fit.covariance, weight});
   }
+  // Discs may be look-alikes, a pattern's own dots among them; who says who it is, is none.
   const auto explained = static_cast<double>(found.front().explained.size());
-  const bool sure =
-      result.complete && result.hypotheses.front().weight >= params_.found_weight &&
+  const bool believed =
+      is_named(found.front().explained) ||
       explained >= params_.explained_share * static_cast<double>(task.sightings.size());
+  const bool sure =
+      result.complete && believed && result.hypotheses.front().weight >= params_.found_weight;
   result.status = sure ? RelocalizationStatus::found : RelocalizationStatus::ambiguous;
   return result;
 }
@@ -267,10 +278,7 @@ std::optional<Relocalizer::Hypothesis> Relocalizer::fitted(const Start& start,
   for (int pass = 0; pass < 2; ++pass) {
     h.explained = explain(h.fit, task);
     if (h.explained.empty()) return std::nullopt;
-    const bool named = std::any_of(
-        h.explained.begin(), h.explained.end(),
-        [](const Explained& one) { return std::holds_alternative<PointsMatch>(one.match); });
-    if (landmarks_of(h.explained) < 2 && !named && !task.prior) return std::nullopt;
+    if (landmarks_of(h.explained) < 2 && !is_named(h.explained) && !task.prior) return std::nullopt;
     if (!may_weigh(unexplained_cost(h.explained, task), h.fit.pose, task)) return std::nullopt;
     const auto fit = refine(h.fit.pose, h.explained, task.prior);
     if (!fit) return std::nullopt;

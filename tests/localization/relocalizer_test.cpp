@@ -314,6 +314,23 @@ TEST(Relocalizer, TakesAnyMixtureOfDiscsPatternsAndTags) {
   EXPECT_LT(nees / right / 3.0, 1.0 + 4.0 * std::sqrt(2.0 / (3.0 * kPoses)));  // k = 4
 }
 
+TEST(Relocalizer, ATagIsBelievedAmongManyLookAlikesOfDiscs) {
+  SweepMaker make_sweep = mixed_room();
+  RandomStream random(10, "look-alikes");
+  SweepMaker clutter;
+  clutter.plan = make_sweep.plan;
+  clutter.map = crowded_walls(40, random);
+  make_sweep.map = LandmarkMap({test::tag(2, 2.2, 0.0, 1.7, 90.0)});
+  const Pose2 truth{1.2, 2.0, 0.7};
+  Sweep sweep = make_sweep(truth, random);
+  const Sweep extra = clutter(truth, random);
+  ASSERT_GT(extra.sightings.size(), 2 * sweep.sightings.size());
+  sweep.sightings.insert(sweep.sightings.end(), extra.sightings.begin(), extra.sightings.end());
+  const Relocalization result = relocalizer_for(make_sweep).solve(sweep);
+  ASSERT_EQ(result.status, RelocalizationStatus::found);
+  EXPECT_TRUE(is_near(result.hypotheses.front().pose, truth));
+}
+
 TEST(Relocalizer, OneTagIsEnoughWhereNothingElseIsToBeSeen) {
   SweepMaker make_sweep = mixed_room();
   make_sweep.map = LandmarkMap({test::tag(2, 2.2, 0.0, 1.7, 90.0)});
