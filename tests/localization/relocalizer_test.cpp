@@ -260,7 +260,8 @@ TEST(Relocalizer, IsSoonDoneWhereAllDiscsAreInSightAtOnce) {
     make_sweep.map = crowded_walls(discs, random);
     const Effort sum = effort(make_sweep, 20, random);
     EXPECT_LE(sum.max_s, 0.2) << discs;
-    EXPECT_EQ(sum.right, 20) << discs;
+    EXPECT_GE(sum.right, 19) << discs;
+    EXPECT_EQ(sum.wrong, 0) << discs;
   }
 }
 
