@@ -23,6 +23,8 @@ constexpr double kPlain_px = 8.0;       // from the border: a patch there should
 constexpr int kIterations = 5;
 constexpr int kSingle =
     16;  // frames with one patch, which may be none, that count as one with more
+constexpr double kUnseenMotion = 4.0;  // variances of a tick
+constexpr double kCalming = 0.9;       // a tick
 constexpr double kFlowSlack_m = 0.01;
 constexpr double kAtRest = 1e-7;
 
@@ -59,6 +61,7 @@ void CeilingFilter::reset(Stamp stamp, const Prior& prior) {
   cells_unsure_ = false;
   gated_ = 0;
   unknown_s_ = 0.0;
+  lively_Q_.setZero();
   refresh_belief();
 }
 
@@ -77,6 +80,7 @@ void CeilingFilter::move(const Pose2& to, const MotionJacobian& F, const Eigen::
   P_.leftCols<3>().bottomRows(P_.rows() - 3) = rows.rightCols(P_.cols() - 3).transpose();
   const Eigen::Matrix3d pose = rows.leftCols<kCommon>() * F.transpose();
   P_.topLeftCorner<3, 3>() = 0.5 * (pose + pose.transpose()) + Q;
+  lively_Q_ = Q.trace() > kCalming * lively_Q_.trace() ? Q : kCalming * lively_Q_;
   refresh_belief();
 }
 
@@ -322,19 +326,19 @@ std::vector<CeilingFilter::Seen> CeilingFilter::gated(const std::vector<Seen>& s
   return passed;
 }
 
-/// Those that the prediction allows. Where it allows none, two or more that agree with one twice as
-/// uncertain are believed, and the pose is then as uncertain: odometry whose variance follows the
-/// measured distance is too sure of a tick that it read too short.
+/// Those that the prediction allows. Where it allows none, two or more that agree with one over
+/// which as much motion was unseen as in the liveliest of the last ticks are believed: odometry
+/// whose variance follows the measured distance is too sure of a tick that it read too short. What
+/// is added is independent of the patches, with whose errors those of the pose go together.
 std::vector<CeilingFilter::Seen> CeilingFilter::passed_gate(const std::vector<Seen>& seen,
                                                             const Pose2& start) {
   std::vector<Seen> passed = gated(seen, linearise(seen, state_at(start)));
   if (!passed.empty() || seen.size() < 2) return passed;
-  const Eigen::MatrixXd sure = P_;
-  P_.topRows<3>() *= 2.0;
-  P_.leftCols<3>() *= 2.0;
+  const Eigen::Matrix3d before = P_.topLeftCorner<3, 3>();
+  P_.topLeftCorner<3, 3>() += kUnseenMotion * lively_Q_;
   passed = gated(seen, linearise(seen, state_at(start)));
   if (passed.size() >= 2) return passed;
-  P_ = sure;
+  P_.topLeftCorner<3, 3>() = before;
   return {};
 }
 

@@ -164,14 +164,26 @@ TEST(CeilingFilter, AThousandFramesLeaveItsCovarianceSymmetric) {
 /// The variance of odometry follows the distance that it reads: next to nothing is uncertain at
 /// zero.
 TEST(CeilingFilter, ATickThatTheOdometryReadTooShortIsNoContradiction) {
-  constexpr double kSigma_m = 0.002;
-  CeilingFilter filter(up_camera(), {}, {});
-  const Pose2 start{0.2, 0.1, 0.4};
-  filter.reset({}, near(start, kSigma_m, kSigma_m));
-  const Pose2 robot = compose(start, {4.7 * kSigma_m, 0.0, 0.0});
-  filter.predict(OdometryIncrement{{}, Stamp::from_seconds(0.04), 0.0, 0.0, 0.0});
-  EXPECT_EQ(filter.update(images_about(up_camera(), {}, robot)), CeilingUpdate::fused);
-  EXPECT_LT((filter.belief().pose.position() - robot.position()).norm(), 0.1 * kSigma_m);
+  CeilingGrid grid;
+  grid.placement_m = 0.005;
+  grid.placement_turn = from_deg(1.3);
+  CeilingFilterParams params;
+  params.odometry = {0.02, 0.02, 0.02};
+  CeilingFilter filter(up_camera(), grid, params);
+  Pose2 robot{0.2, 0.1, 0.4};
+  filter.reset({}, near(robot, 0.05, 0.05));
+  const auto drive = [&](int i, double read_m) {
+    const Stamp now = Stamp::from_seconds(0.04 * i);
+    robot = move(robot, {filter.belief().stamp, now, 0.0, 0.02, 0.0});
+    filter.predict(OdometryIncrement{filter.belief().stamp, now, 0.0, read_m, 0.0});
+    return filter.update(images_about(up_camera(), {}, robot));
+  };
+  for (int i = 1; i < 20; ++i) ASSERT_EQ(drive(i, 0.02), CeilingUpdate::fused);
+  const double sigma = filter.belief().position_sigma();
+  EXPECT_EQ(drive(20, 0.01), CeilingUpdate::fused);
+  EXPECT_LT((filter.belief().pose.position() - robot.position()).norm(), 3.0 * sigma);
+  // It taught nothing of where all patches together hang.
+  EXPECT_GT(filter.belief().position_sigma(), 0.98 * sigma);
 }
 
 /// How the picture of the ceiling moves when the camera does by @p step, well measured.
