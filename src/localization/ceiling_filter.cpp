@@ -21,10 +21,9 @@ constexpr double kNegligible = 1e-6;
 constexpr double kForgotten_px = 40.0;  // beyond the border
 constexpr double kPlain_px = 8.0;       // from the border: a patch there should be found
 constexpr int kIterations = 5;
-constexpr int kSingle =
-    16;  // frames with one patch, which may be none, that count as one with more
-constexpr double kUnseenMotion = 4.0;  // variances of a tick
-constexpr double kCalming = 0.9;       // a tick
+constexpr int kSingle = 16;  // frames with one patch, which may be none, for one with more
+constexpr double kUnseenMotions[] = {4.0, 16.0, 64.0};  // variances of a tick
+constexpr double kCalming = 0.9;                        // a tick
 constexpr double kFlowSlack_m = 0.01;
 constexpr double kAtRest = 1e-7;
 
@@ -326,18 +325,21 @@ std::vector<CeilingFilter::Seen> CeilingFilter::gated(const std::vector<Seen>& s
   return passed;
 }
 
-/// Those that the prediction allows. Where it allows none, two or more that agree with one over
-/// which as much motion was unseen as in the liveliest of the last ticks are believed: odometry
-/// whose variance follows the measured distance is too sure of a tick that it read too short. What
-/// is added is independent of the patches, with whose errors those of the pose go together.
+/// Those that the prediction allows. Where it allows none, two or more are believed that agree with
+/// one over which a multiple of the motion of the liveliest of the last ticks was unseen: odometry
+/// whose variance follows the measured distance is too sure of a tick that it read too short, and a
+/// wheel slips sooner than somebody lifts the robot and puts it down a centimetre further. What is
+/// added is independent of the patches, with whose errors those of the pose go together.
 std::vector<CeilingFilter::Seen> CeilingFilter::passed_gate(const std::vector<Seen>& seen,
                                                             const Pose2& start) {
   std::vector<Seen> passed = gated(seen, linearise(seen, state_at(start)));
   if (!passed.empty() || seen.size() < 2) return passed;
   const Eigen::Matrix3d before = P_.topLeftCorner<3, 3>();
-  P_.topLeftCorner<3, 3>() += kUnseenMotion * lively_Q_;
-  passed = gated(seen, linearise(seen, state_at(start)));
-  if (passed.size() >= 2) return passed;
+  for (const double variances : kUnseenMotions) {
+    P_.topLeftCorner<3, 3>() = before + variances * lively_Q_;
+    passed = gated(seen, linearise(seen, state_at(start)));
+    if (passed.size() >= 2) return passed;
+  }
   P_.topLeftCorner<3, 3>() = before;
   return {};
 }
@@ -410,12 +412,13 @@ void CeilingFilter::normalise_shifts() {
   shifts_ = std::move(kept);
 }
 
-/// Patches contradict the prediction again and again: it may be anywhere in its cell and the next.
+/// Patches contradict the prediction again and again: it may be anywhere in its cell and the next,
+/// turned anyhow.
 void CeilingFilter::doubt() {
   const double sigma = 0.5 * grid_.pitch_m;
   P_.topRows<3>().setZero();
   P_.leftCols<3>().setZero();
-  P_.diagonal().head<3>() << sigma * sigma, sigma * sigma, from_deg(30.0) * from_deg(30.0);
+  P_.diagonal().head<3>() << sigma * sigma, sigma * sigma, kPi * kPi / 3.0;
   gated_ = 0;
 }
 
