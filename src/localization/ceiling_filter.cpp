@@ -25,6 +25,7 @@ constexpr int kSingle = 16;  // frames with one patch, which may be none, for on
 constexpr double kUnseenMotions[] = {4.0, 16.0, 64.0};  // variances of a tick
 constexpr double kCalming = 0.9;                        // a tick
 constexpr double kFlowSlack_m = 0.01;
+constexpr double kTiltedFlow = 0.3;  // how far from the middle the texture's may be, in distances
 constexpr double kAtRest = 1e-7;
 
 Eigen::Matrix2d world_to_robot(double theta) {
@@ -92,19 +93,33 @@ void CeilingFilter::predict(const OdometryIncrement& u) {
   move(vigia::move(from, u), F, G * control_covariance(u, params_.odometry) * G.transpose());
 }
 
+/// The flow was levelled by the mounting as it was known. A tilt τ puts the vertical beside the
+/// middle of what it took for level, at o = (−τy, τx), so that a turn seems to be a shift, too: s =
+/// s′ − (I − R) o. What a tilt does besides, by where in the picture the texture lies, is taken for
+/// noise.
 CeilingFilter::Motion CeilingFilter::seen_motion(const ImageShift& shift) const {
   const Pose2 from = pose();
   const CeilingCamera camera = corrected(camera_, camera_errors());
-  Motion motion{robot_motion(camera, shift), MotionJacobian::Zero(), Eigen::Matrix3d::Zero()};
+  const Eigen::Vector2d tilt = x_.segment<2>(3);
+  Eigen::Matrix2d beside;
+  beside << 0.0, -1.0, 1.0, 0.0;
+  const Eigen::Matrix2d dshift_dtilt =
+      (Eigen::Rotation2Dd(shift.turn).toRotationMatrix() - Eigen::Matrix2d::Identity()) * beside;
+  ImageShift level = shift;
+  level.shift += dshift_dtilt * tilt;
+  Motion motion{robot_motion(camera, level), MotionJacobian::Zero(), Eigen::Matrix3d::Zero()};
   const Eigen::Matrix2d R = Eigen::Rotation2Dd(from.theta).toRotationMatrix();
   const Eigen::Vector2d step = R * motion.step.position();
   motion.F.leftCols<3>().setIdentity();
   motion.F.block<2, 1>(0, 2) = Eigen::Vector2d(-step.y(), step.x());
-  motion.F.block<2, 1>(0, 5) = R * (camera.rise_m() * shift.shift);
+  motion.F.block<2, 2>(0, 3) = camera.rise_m() * R * dshift_dtilt;
+  motion.F.block<2, 1>(0, 5) = R * (camera.rise_m() * level.shift);
   Eigen::Matrix3d G = Eigen::Matrix3d::Identity();
   G.topLeftCorner<2, 2>() = camera.rise_m() * R;
   Eigen::Matrix3d covariance = shift.covariance;
-  covariance.diagonal().array() += params_.flow_floor * params_.flow_floor;
+  const double tilted = tilt.squaredNorm() + P_(3, 3) + P_(4, 4);
+  covariance.diagonal().array() += params_.flow_floor * params_.flow_floor +
+                                   kTiltedFlow * kTiltedFlow * tilted * shift.shift.squaredNorm();
   motion.Q = G * covariance * G.transpose();
   return motion;
 }

@@ -215,6 +215,32 @@ TEST(CeilingFilter, BelievesTheFlowThatTheOdometryBearsOutAndNoOther) {
   EXPECT_GT(fast.position_sigma(), 0.05);
 }
 
+/// A picture that is levelled wrong by a tilt sees a turn on the spot as a shift, too.
+TEST(CeilingFilter, ATurnUnderATiltIsNoShift) {
+  CeilingCamera camera = up_camera();
+  camera.rMc.translation() = Eigen::Vector3d(0.0, 0.0, 0.5);
+  const CeilingCameraErrors errors{0.02, -0.03, 0.0};
+  CeilingFilterParams params;
+  params.max_speed_mps = 5.0;
+  CeilingFilter filter(camera, {}, params);
+  filter.reset({}, near({}, 1e-4, 1e-4));
+  filter.place({Pose2{}, errors, {}});
+  // A patch above, as it is seen before and after the turn, by the camera that is thought level.
+  constexpr double kTurn = 0.1;
+  const Eigen::Vector2d o(-errors.tilt_y, errors.tilt_x);
+  ImageShift seen = shift_of({0.0, 0.0, kTurn});
+  seen.shift = o - Eigen::Rotation2Dd(kTurn) * o;
+  filter.predict(seen, Stamp::from_seconds(0.04));
+  EXPECT_LT(filter.belief().pose.position().norm(), 1e-9);
+  // That it is so is what the camera's images say.
+  const Pose2 turned{0.0, 0.0, kTurn};
+  const PatchImage before = image_of(camera, errors, {}, {0.0, 0.0, 0.0});
+  const PatchImage after = image_of(camera, errors, turned, {0.0, 0.0, 0.0});
+  const Eigen::Vector2d m1 = on_ceiling(camera, before)->q / camera.rise_m();
+  const Eigen::Vector2d m2 = on_ceiling(camera, after)->q / camera.rise_m();
+  EXPECT_LT((m2 - Eigen::Rotation2Dd(-kTurn) * (m1 - seen.shift)).norm(), 1e-4);
+}
+
 TEST(CeilingFilter, OnePatchTooManyIsNoKidnapping) {
   CeilingFilter filter(up_camera(), {}, {});
   const Pose2 robot{0.2, 0.1, 0.4};
