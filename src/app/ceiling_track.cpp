@@ -12,12 +12,12 @@ namespace vigia::app {
 
 CeilingTrack::CeilingTrack(const tracking::PatchFinderParams& params) : finder_(params) {}
 
-CeilingTrack::CeilingTrack(const perception::CeilingView& view)
-    : finder_(perception::finder_of(view)), view_(view), follower_(view) {}
+CeilingTrack::CeilingTrack(const perception::CeilingView& view, double rate_hz)
+    : finder_(perception::finder_of(view)), rate_hz_(rate_hz), view_(view), follower_(view) {}
 
 CeilingTrack::Row CeilingTrack::next(const imaging::Picture& picture, int number) {
   if (!follower_) return {finder_.find(*picture.frame), ""};
-  const double time_s = picture.time_s.value_or(number);
+  const double time_s = picture.time_s.value_or(number / rate_hz_);
   auto step = follower_->next(imaging::grey_image(*picture.frame), Stamp::from_seconds(time_s));
   std::string pose = pose_fields(step);
   return {std::move(step.scan), std::move(pose)};

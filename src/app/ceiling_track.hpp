@@ -15,7 +15,8 @@ namespace vigia::app {
 class CeilingTrack {
  public:
   explicit CeilingTrack(const tracking::PatchFinderParams& params);
-  explicit CeilingTrack(const perception::CeilingView& view);
+  /// @p rate_hz: of pictures that have no time of their own.
+  CeilingTrack(const perception::CeilingView& view, double rate_hz);
 
   bool gives_poses() const { return view_.has_value(); }
   const std::optional<perception::CeilingView>& view() const { return view_; }
@@ -24,7 +25,7 @@ class CeilingTrack {
     tracking::PatchScan scan;
     std::string pose;  ///< the fields of pose_header(), where it gives poses
   };
-  /// @p number counts the pictures, from 1. A picture without a time is a second after the last.
+  /// @p number counts the pictures, from 1.
   Row next(const imaging::Picture& picture, int number);
 
   static std::string pose_header();
@@ -33,6 +34,7 @@ class CeilingTrack {
   std::string pose_fields(const perception::CeilingFollower::Step& step) const;
 
   tracking::PatchFinder finder_;
+  double rate_hz_ = 25.0;
   std::optional<perception::CeilingView> view_;
   std::optional<perception::CeilingFollower> follower_;
 };

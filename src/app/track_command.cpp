@@ -1,3 +1,4 @@
+#include "ceiling_options.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "mirror_option.hpp"
@@ -42,11 +43,7 @@ struct TrackOptions {
   std::string mirror;
   double ray_step_deg = 3.0;
   std::string patch_px;
-  std::string patch_m;
-  double rise_m = 0.0;
-  double pitch_m = 1.0;
-  std::string placement;
-  bool plain = false;
+  CeilingOptions ceiling;
   std::string camera;
   std::string landmarks;
   double size_m = 0.0;
@@ -69,16 +66,6 @@ std::optional<Number> parsed(std::string_view text) {
   const auto result = std::from_chars(text.data(), end, value);
   if (text.empty() || result.ec != std::errc() || result.ptr != end) return std::nullopt;
   return value;
-}
-
-/// Two numbers with a colon between them.
-std::optional<std::pair<double, double>> parsed_pair(std::string_view text) {
-  const std::size_t colon = text.find(':');
-  if (colon == std::string_view::npos) return std::nullopt;
-  const auto first = parsed<double>(text.substr(0, colon));
-  const auto second = parsed<double>(text.substr(colon + 1));
-  if (!first || !second) return std::nullopt;
-  return std::pair{*first, *second};
 }
 
 struct RadiusRange {
@@ -158,53 +145,17 @@ bool follows_ceiling(const TrackOptions& options) {
   return options.tracker == "ceiling";
 }
 
-/// Length and width, LENGTH:WIDTH.
-std::pair<double, double> parse_patch(const char* option, const std::string& text, double min,
-                                      double max) {
-  const auto size = parsed_pair(text);
-  if (!size || !(size->second >= min) || !(size->first >= 1.5 * size->second) ||
-      !(size->first <= max))
-    throw InputError(
-        fmt::format("{}: found '{}', must be LENGTH:WIDTH with {} ≤ WIDTH, 1.5 WIDTH ≤ LENGTH ≤ {}",
-                    option, text, min, max));
-  return *size;
-}
-
-void parse_placement(const std::string& text, CeilingGrid& grid) {
-  const auto sigma = parsed_pair(text);
-  if (!sigma || !(sigma->first >= 0.0) || !(sigma->first <= 0.1) || !(sigma->second >= 0.0) ||
-      !(sigma->second <= 20.0))
-    throw InputError(
-        fmt::format("--placement: found '{}', must be METRES:DEGREES, 0–0.1 m and 0–20°", text));
-  grid.placement_m = sigma->first;
-  grid.placement_turn = from_deg(sigma->second);
-}
-
-/// The camera is given, so that there are poses.
-perception::CeilingView ceiling_view(const TrackOptions& options) {
-  if (!options.patch_px.empty())
-    throw InputError("--patch-px: with --camera the size in pixels follows from --patch-m");
-  if (!(options.rise_m > 0.0))
-    throw InputError("--camera: how far is the ceiling from the camera? Give --rise-m H");
-  perception::CeilingView view;
-  view.camera = read_camera(options.camera);
-  view.rise_m = options.rise_m;
-  view.grid.pitch_m = options.pitch_m;
-  view.grid.polarity = !options.plain;
-  if (!options.patch_m.empty())
-    std::tie(view.grid.length_m, view.grid.width_m) =
-        parse_patch("--patch-m", options.patch_m, 0.005, 0.5 * options.pitch_m);
-  if (!options.placement.empty()) parse_placement(options.placement, view.grid);
-  return view;
-}
-
 CeilingTrack make_ceiling(const TrackOptions& options) {
   if (!options.ids.empty() || !options.radius_px.empty() || options.size_m > 0.0 ||
       !options.landmarks.empty())
     throw InputError(
         "--tracker ceiling: patches have no --ids, --radius-px, --size or --landmarks");
-  if (!options.camera.empty()) return CeilingTrack(ceiling_view(options));
-  if (options.rise_m > 0.0 || !options.patch_m.empty())
+  if (!options.camera.empty()) {
+    if (!options.patch_px.empty())
+      throw InputError("--patch-px: with --camera the size in pixels follows from --patch-m");
+    return CeilingTrack(ceiling_view(options.ceiling, options.camera), options.ceiling.rate_hz);
+  }
+  if (options.ceiling.rise_m > 0.0 || !options.ceiling.patch_m.empty())
     throw InputError("--rise-m and --patch-m give poses only with --camera FILE");
   if (options.patch_px.empty())
     throw InputError(
@@ -213,16 +164,14 @@ CeilingTrack make_ceiling(const TrackOptions& options) {
   tracking::PatchFinderParams params;
   std::tie(params.length_px, params.width_px) =
       parse_patch("--patch-px", options.patch_px, 3.0, 1000.0);
-  params.polarity = !options.plain;
+  params.polarity = !options.ceiling.plain;
   return CeilingTrack(params);
 }
 
 void refuse_other_trackers_options(const TrackOptions& options) {
   if (!scans_field(options) && (!options.mirror.empty() || options.output.panorama))
     throw InputError("--mirror and --panorama: are for --tracker field_scan");
-  if (!follows_ceiling(options) &&
-      (!options.patch_px.empty() || !options.patch_m.empty() || options.rise_m > 0.0 ||
-       options.plain || !options.placement.empty()))
+  if (!follows_ceiling(options) && (!options.patch_px.empty() || options.ceiling.given()))
     throw InputError(
         "--patch-px, --patch-m, --rise-m, --placement and --plain: are for --tracker ceiling");
 }
@@ -363,27 +312,6 @@ void add_field(CLI::App& command, TrackOptions& options) {
                    "field_scan: unwrapped pictures in the folder panorama");
 }
 
-void add_ceiling_options(CLI::App& command, TrackOptions& options) {
-  command.add_option("--patch-px", options.patch_px,
-                     "ceiling: LENGTH:WIDTH of a patch in the pictures, px");
-  command
-      .add_option(
-          "--rise-m", options.rise_m,
-          "ceiling, with --camera: from the camera to the ceiling, m; gives the camera's pose")
-      ->check(CLI::Range(0.05, 100.0));
-  command.add_option("--patch-m", options.patch_m,
-                     "ceiling, with --camera: LENGTH:WIDTH of a patch, m (0.09:0.03)");
-  command
-      .add_option("--pitch-m", options.pitch_m, "ceiling, with --camera: from patch to patch, m")
-      ->check(CLI::Range(0.05, 100.0))
-      ->capture_default_str();
-  command.add_option(
-      "--placement", options.placement,
-      "ceiling, with --camera: METRES:DEGREES, σ of a patch's place beside its node of "
-      "the grid and of its direction");
-  command.add_flag("--plain", options.plain, "ceiling: the patches have no tongue at one end");
-}
-
 void add_pose(CLI::App& command, TrackOptions& options) {
   command.add_option("--camera", options.camera,
                      "Calibrated camera (ViSP's XML, OpenCV's YAML): gives poses");
@@ -419,7 +347,9 @@ void add_track(CLI::App& app, int& status) {
       app.add_subcommand("track", "Run a tracker on pictures, a video or a live camera");
   add_what(*command, *options);
   add_field(*command, *options);
-  add_ceiling_options(*command, *options);
+  command->add_option("--patch-px", options->patch_px,
+                      "ceiling: LENGTH:WIDTH of a patch in the pictures, px");
+  add_ceiling_options(*command, options->ceiling);
   add_pose(*command, *options);
   add_output(*command, *options);
   command->callback([options, &status] { status = track(*options); });

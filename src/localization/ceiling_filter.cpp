@@ -21,9 +21,11 @@ constexpr double kNegligible = 1e-6;
 constexpr double kForgotten_px = 40.0;  // beyond the border
 constexpr double kPlain_px = 8.0;       // from the border: a patch there should be found
 constexpr int kIterations = 5;
-constexpr int kSingle =
-    16;  // frames with one patch, which may be none, that count as one with more
+constexpr int kSingle = 16;  // frames with one patch, which may be none, for one with more
+constexpr double kUnseenMotions[] = {4.0, 16.0, 64.0};  // variances of a tick
+constexpr double kCalming = 0.9;                        // a tick
 constexpr double kFlowSlack_m = 0.01;
+constexpr double kTiltedFlow = 0.3;  // how far from the middle the texture's may be, in distances
 constexpr double kAtRest = 1e-7;
 
 Eigen::Matrix2d world_to_robot(double theta) {
@@ -59,6 +61,7 @@ void CeilingFilter::reset(Stamp stamp, const Prior& prior) {
   cells_unsure_ = false;
   gated_ = 0;
   unknown_s_ = 0.0;
+  lively_Q_.setZero();
   refresh_belief();
 }
 
@@ -77,6 +80,7 @@ void CeilingFilter::move(const Pose2& to, const MotionJacobian& F, const Eigen::
   P_.leftCols<3>().bottomRows(P_.rows() - 3) = rows.rightCols(P_.cols() - 3).transpose();
   const Eigen::Matrix3d pose = rows.leftCols<kCommon>() * F.transpose();
   P_.topLeftCorner<3, 3>() = 0.5 * (pose + pose.transpose()) + Q;
+  lively_Q_ = Q.trace() > kCalming * lively_Q_.trace() ? Q : kCalming * lively_Q_;
   refresh_belief();
 }
 
@@ -89,19 +93,33 @@ void CeilingFilter::predict(const OdometryIncrement& u) {
   move(vigia::move(from, u), F, G * control_covariance(u, params_.odometry) * G.transpose());
 }
 
+/// The flow was levelled by the mounting as it was known. A tilt τ puts the vertical beside the
+/// middle of what it took for level, at o = (−τy, τx), so that a turn seems to be a shift, too: s =
+/// s′ − (I − R) o. What a tilt does besides, by where in the picture the texture lies, is taken for
+/// noise.
 CeilingFilter::Motion CeilingFilter::seen_motion(const ImageShift& shift) const {
   const Pose2 from = pose();
   const CeilingCamera camera = corrected(camera_, camera_errors());
-  Motion motion{robot_motion(camera, shift), MotionJacobian::Zero(), Eigen::Matrix3d::Zero()};
+  const Eigen::Vector2d tilt = x_.segment<2>(3);
+  Eigen::Matrix2d beside;
+  beside << 0.0, -1.0, 1.0, 0.0;
+  const Eigen::Matrix2d dshift_dtilt =
+      (Eigen::Rotation2Dd(shift.turn).toRotationMatrix() - Eigen::Matrix2d::Identity()) * beside;
+  ImageShift level = shift;
+  level.shift += dshift_dtilt * tilt;
+  Motion motion{robot_motion(camera, level), MotionJacobian::Zero(), Eigen::Matrix3d::Zero()};
   const Eigen::Matrix2d R = Eigen::Rotation2Dd(from.theta).toRotationMatrix();
   const Eigen::Vector2d step = R * motion.step.position();
   motion.F.leftCols<3>().setIdentity();
   motion.F.block<2, 1>(0, 2) = Eigen::Vector2d(-step.y(), step.x());
-  motion.F.block<2, 1>(0, 5) = R * (camera.rise_m() * shift.shift);
+  motion.F.block<2, 2>(0, 3) = camera.rise_m() * R * dshift_dtilt;
+  motion.F.block<2, 1>(0, 5) = R * (camera.rise_m() * level.shift);
   Eigen::Matrix3d G = Eigen::Matrix3d::Identity();
   G.topLeftCorner<2, 2>() = camera.rise_m() * R;
   Eigen::Matrix3d covariance = shift.covariance;
-  covariance.diagonal().array() += params_.flow_floor * params_.flow_floor;
+  const double tilted = tilt.squaredNorm() + P_(3, 3) + P_(4, 4);
+  covariance.diagonal().array() += params_.flow_floor * params_.flow_floor +
+                                   kTiltedFlow * kTiltedFlow * tilted * shift.shift.squaredNorm();
   motion.Q = G * covariance * G.transpose();
   return motion;
 }
@@ -322,19 +340,22 @@ std::vector<CeilingFilter::Seen> CeilingFilter::gated(const std::vector<Seen>& s
   return passed;
 }
 
-/// Those that the prediction allows. Where it allows none, two or more that agree with one twice as
-/// uncertain are believed, and the pose is then as uncertain: odometry whose variance follows the
-/// measured distance is too sure of a tick that it read too short.
+/// Those that the prediction allows. Where it allows none, two or more are believed that agree with
+/// one over which a multiple of the motion of the liveliest of the last ticks was unseen: odometry
+/// whose variance follows the measured distance is too sure of a tick that it read too short, and a
+/// wheel slips sooner than somebody lifts the robot and puts it down a centimetre further. What is
+/// added is independent of the patches, with whose errors those of the pose go together.
 std::vector<CeilingFilter::Seen> CeilingFilter::passed_gate(const std::vector<Seen>& seen,
                                                             const Pose2& start) {
   std::vector<Seen> passed = gated(seen, linearise(seen, state_at(start)));
   if (!passed.empty() || seen.size() < 2) return passed;
-  const Eigen::MatrixXd sure = P_;
-  P_.topRows<3>() *= 2.0;
-  P_.leftCols<3>() *= 2.0;
-  passed = gated(seen, linearise(seen, state_at(start)));
-  if (passed.size() >= 2) return passed;
-  P_ = sure;
+  const Eigen::Matrix3d before = P_.topLeftCorner<3, 3>();
+  for (const double variances : kUnseenMotions) {
+    P_.topLeftCorner<3, 3>() = before + variances * lively_Q_;
+    passed = gated(seen, linearise(seen, state_at(start)));
+    if (passed.size() >= 2) return passed;
+  }
+  P_.topLeftCorner<3, 3>() = before;
   return {};
 }
 
@@ -406,12 +427,13 @@ void CeilingFilter::normalise_shifts() {
   shifts_ = std::move(kept);
 }
 
-/// Patches contradict the prediction again and again: it may be anywhere in its cell and the next.
+/// Patches contradict the prediction again and again: it may be anywhere in its cell and the next,
+/// turned anyhow.
 void CeilingFilter::doubt() {
   const double sigma = 0.5 * grid_.pitch_m;
   P_.topRows<3>().setZero();
   P_.leftCols<3>().setZero();
-  P_.diagonal().head<3>() << sigma * sigma, sigma * sigma, from_deg(30.0) * from_deg(30.0);
+  P_.diagonal().head<3>() << sigma * sigma, sigma * sigma, kPi * kPi / 3.0;
   gated_ = 0;
 }
 

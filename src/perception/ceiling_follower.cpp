@@ -45,7 +45,8 @@ CeilingFollower::CeilingFollower(const CeilingView& view)
       grid_(view.grid),
       finder_(finder_of(view)),
       flow_(camera_.model, camera_.rMc.linear()),
-      filter_(camera_, view.grid, filter_params_of(view)) {}
+      filter_(camera_, view.grid, filter_params_of(view)),
+      start_tilt_m_(view.rise_m * std::tan(view.tilt_sigma)) {}
 
 /// Where the camera is if the patch nearest to the picture's middle is that of the cell (0, 0).
 bool CeilingFollower::begin(const tracking::PatchScan& scan, Stamp stamp) {
@@ -65,7 +66,8 @@ bool CeilingFollower::begin(const tracking::PatchScan& scan, Stamp stamp) {
   const Eigen::Vector2d p = cell_centre(grid_, {0, 0}) - Eigen::Rotation2Dd(pose.theta) * patch->q;
   pose.x = p.x();
   pose.y = p.y();
-  const Eigen::Vector3d sigma(kStartSigma_m, kStartSigma_m, kStartTurn);
+  const double sigma_m = kStartSigma_m + start_tilt_m_;
+  const Eigen::Vector3d sigma(sigma_m, sigma_m, kStartTurn);
   filter_.reset(stamp, {pose, sigma.cwiseAbs2().asDiagonal()});
   return true;
 }

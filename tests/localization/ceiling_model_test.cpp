@@ -164,14 +164,26 @@ TEST(CeilingFilter, AThousandFramesLeaveItsCovarianceSymmetric) {
 /// The variance of odometry follows the distance that it reads: next to nothing is uncertain at
 /// zero.
 TEST(CeilingFilter, ATickThatTheOdometryReadTooShortIsNoContradiction) {
-  constexpr double kSigma_m = 0.002;
-  CeilingFilter filter(up_camera(), {}, {});
-  const Pose2 start{0.2, 0.1, 0.4};
-  filter.reset({}, near(start, kSigma_m, kSigma_m));
-  const Pose2 robot = compose(start, {4.7 * kSigma_m, 0.0, 0.0});
-  filter.predict(OdometryIncrement{{}, Stamp::from_seconds(0.04), 0.0, 0.0, 0.0});
-  EXPECT_EQ(filter.update(images_about(up_camera(), {}, robot)), CeilingUpdate::fused);
-  EXPECT_LT((filter.belief().pose.position() - robot.position()).norm(), 0.1 * kSigma_m);
+  CeilingGrid grid;
+  grid.placement_m = 0.005;
+  grid.placement_turn = from_deg(1.3);
+  CeilingFilterParams params;
+  params.odometry = {0.02, 0.02, 0.02};
+  CeilingFilter filter(up_camera(), grid, params);
+  Pose2 robot{0.2, 0.1, 0.4};
+  filter.reset({}, near(robot, 0.05, 0.05));
+  const auto drive = [&](int i, double read_m) {
+    const Stamp now = Stamp::from_seconds(0.04 * i);
+    robot = move(robot, {filter.belief().stamp, now, 0.0, 0.02, 0.0});
+    filter.predict(OdometryIncrement{filter.belief().stamp, now, 0.0, read_m, 0.0});
+    return filter.update(images_about(up_camera(), {}, robot));
+  };
+  for (int i = 1; i < 20; ++i) ASSERT_EQ(drive(i, 0.02), CeilingUpdate::fused);
+  const double sigma = filter.belief().position_sigma();
+  EXPECT_EQ(drive(20, 0.01), CeilingUpdate::fused);
+  EXPECT_LT((filter.belief().pose.position() - robot.position()).norm(), 3.0 * sigma);
+  // It taught nothing of where all patches together hang.
+  EXPECT_GT(filter.belief().position_sigma(), 0.98 * sigma);
 }
 
 /// How the picture of the ceiling moves when the camera does by @p step, well measured.
@@ -201,6 +213,32 @@ TEST(CeilingFilter, BelievesTheFlowThatTheOdometryBearsOutAndNoOther) {
   const Belief fast = after(shift_of({0.3, 0.0, 0.0}), u.to);
   EXPECT_NEAR(fast.pose.x, 0.2, 1e-9);
   EXPECT_GT(fast.position_sigma(), 0.05);
+}
+
+/// A picture that is levelled wrong by a tilt sees a turn on the spot as a shift, too.
+TEST(CeilingFilter, ATurnUnderATiltIsNoShift) {
+  CeilingCamera camera = up_camera();
+  camera.rMc.translation() = Eigen::Vector3d(0.0, 0.0, 0.5);
+  const CeilingCameraErrors errors{0.02, -0.03, 0.0};
+  CeilingFilterParams params;
+  params.max_speed_mps = 5.0;
+  CeilingFilter filter(camera, {}, params);
+  filter.reset({}, near({}, 1e-4, 1e-4));
+  filter.place({Pose2{}, errors, {}});
+  // A patch above, as it is seen before and after the turn, by the camera that is thought level.
+  constexpr double kTurn = 0.1;
+  const Eigen::Vector2d o(-errors.tilt_y, errors.tilt_x);
+  ImageShift seen = shift_of({0.0, 0.0, kTurn});
+  seen.shift = o - Eigen::Rotation2Dd(kTurn) * o;
+  filter.predict(seen, Stamp::from_seconds(0.04));
+  EXPECT_LT(filter.belief().pose.position().norm(), 1e-9);
+  // That it is so is what the camera's images say.
+  const Pose2 turned{0.0, 0.0, kTurn};
+  const PatchImage before = image_of(camera, errors, {}, {0.0, 0.0, 0.0});
+  const PatchImage after = image_of(camera, errors, turned, {0.0, 0.0, 0.0});
+  const Eigen::Vector2d m1 = on_ceiling(camera, before)->q / camera.rise_m();
+  const Eigen::Vector2d m2 = on_ceiling(camera, after)->q / camera.rise_m();
+  EXPECT_LT((m2 - Eigen::Rotation2Dd(-kTurn) * (m1 - seen.shift)).norm(), 1e-4);
 }
 
 TEST(CeilingFilter, OnePatchTooManyIsNoKidnapping) {

@@ -62,6 +62,30 @@ TEST_F(FollowedCeiling, AfterALongGapItIsAmbiguous) {
   EXPECT_EQ(follower.belief()->status, BeliefStatus::ambiguous);
 }
 
+TEST_F(FollowedCeiling, TiltAndHeightAreFoundFromADriveThatTurns) {
+  const localization::CeilingCameraErrors errors{from_deg(1.2), from_deg(-0.7), 0.02};
+  localization::CeilingCamera known;
+  known.model = view_.camera;
+  known.rMc.translation().z() = 0.5;
+  // The follower's rise is 2 % too small for a ceiling at 2.7 m.
+  view_.rise_m = 2.2 / std::exp(errors.log_height);
+  view_.tilt_sigma = from_deg(1.0);
+  view_.height_sigma = 0.03;
+  const Eigen::Isometry3d rMc = localization::corrected(known, errors).rMc;
+  CeilingFollower follower(view_);
+  Pose2 pose{7.2, -3.3, 2.5};
+  for (int i = 0; i < 50; ++i) {
+    const auto frame = scene_.expose(to_isometry(pose) * rMc, view_.camera, Stamp{i}, {});
+    follower.next(imaging::grey_image(*frame), Stamp::from_seconds(0.04 * i));
+    pose = compose(pose, {0.04, 0.0, 0.03});
+  }
+  const localization::CeilingCameraErrors found = follower.camera_errors();
+  EXPECT_NEAR(to_deg(found.tilt_x), to_deg(errors.tilt_x), 0.02);
+  EXPECT_NEAR(to_deg(found.tilt_y), to_deg(errors.tilt_y), 0.02);
+  EXPECT_NEAR(found.log_height, errors.log_height, 0.003);
+  EXPECT_EQ(follower.belief()->status, BeliefStatus::tracking);
+}
+
 TEST_F(FollowedCeiling, WithoutAPatchThereIsNoPose) {
   CeilingFollower follower(view_);
   vpImage<unsigned char> blank(480, 640, 180);

@@ -300,6 +300,21 @@ TEST_F(Track, APatchOfACeilingIsAPlaceADirectionAndUnderAKnownCameraAPose) {
   EXPECT_NEAR(std::stod(poses[1][7]), -0.2 * 180.0 / 3.14159265, 0.5);
 }
 
+TEST_F(Track, TooFewPatchesCalibrateNothing) {
+  const auto camera = file("camera.xml", kCameraXml);
+  const auto one = file("one.pgm", strip_picture(70.25, 50.5, 0.2));
+  const std::string command = "calibrate ceiling --plain --camera " + camera.string() + " ";
+  const auto result = vigia(command + "--rise-m 1.5 " + one.string());
+  EXPECT_EQ(result.status, 1);
+  EXPECT_EQ(result.out, "");
+  EXPECT_THAT(result.err, HasSubstr("not calibrated: 1 pictures with patches that agree"));
+  EXPECT_EQ(vigia(command + one.string()).status, 2);
+  const auto other = file("other.pgm", disc_picture(40.0, 60.0, 14.0, 100, 120));
+  const auto wrong = vigia(command + "--rise-m 1.5 " + other.string());
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("100×120 pixels, but --camera is calibrated for 160×120"));
+}
+
 TEST_F(Track, WithoutADisplayAWindowIsAnError) {
   const auto picture = file("disc.pgm", disc_picture(40.0, 60.0, 14.0));
   const auto result = vigia::testing::run_process(

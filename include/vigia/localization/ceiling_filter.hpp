@@ -138,7 +138,9 @@ class CeilingFilter {
   std::set<CeilingCell> judged_;  ///< cells in view whose presence or absence was weighed
   bool cells_unsure_ = false;  ///< whether the patches before were perhaps the same in other cells
   int gated_ = 0;              ///< frames in a row, weighed
-  double unknown_s_ = 0.0;     ///< for how long nothing was known of the motion
+  /// Of the motion in a tick lately, at most; world frame.
+  Eigen::Matrix3d lively_Q_ = Eigen::Matrix3d::Zero();
+  double unknown_s_ = 0.0;  ///< for how long nothing was known of the motion
   Stamp stamp_;
   Belief belief_;
 };

@@ -55,6 +55,7 @@ class CeilingFollower {
   tracking::PatchFinder finder_;
   tracking::FrameFlow flow_;
   localization::CeilingFilter filter_;
+  double start_tilt_m_;  ///< what a tilt moves the first patch by, σ
   bool begun_ = false;
 };
 
