@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include <Eigen/Cholesky>
 
@@ -24,6 +26,22 @@ Agreement agreement(const PoseHypothesis& candidate, const PoseHypothesis& belie
   const Eigen::Vector3d e = difference(candidate.pose, believed.pose);
   const double square = e.dot(spread.solve(e));
   return {square, -0.5 * (square + spread.vectorD().array().log().sum())};
+}
+
+/// The candidate with the heading that the displacement was turned by, where that is the better
+/// known: the bearing's own is that one, with the error of the position on top. Both are off by the
+/// same angle, the position about the landmark.
+PoseHypothesis with_better_heading(PoseHypothesis candidate, const Eigen::Vector2d& landmark_w,
+                                   const HeadingPrior& heading) {
+  const double variance = heading.sigma * heading.sigma;
+  if (variance >= candidate.covariance(2, 2)) return candidate;
+  const Eigen::Vector2d q = candidate.pose.position() - landmark_w;
+  candidate.pose.theta = heading.heading;
+  candidate.covariance(2, 2) = variance;
+  candidate.covariance.topRightCorner<2, 1>() = variance * Eigen::Vector2d(-q.y(), q.x());
+  candidate.covariance.bottomLeftCorner<1, 2>() =
+      candidate.covariance.topRightCorner<2, 1>().transpose();
+  return candidate;
 }
 
 /// The corner that is seen nearest the middle of the left image.
@@ -100,24 +118,22 @@ UpdateResult RunningFixLocalizer::fix(const LandmarkPlace& corner, const First& 
                                       const PolarSighting& second) {
   std::vector<PoseHypothesis> weighed;
   std::vector<double> logs;
-  RunningFixStatus status = RunningFixStatus::degenerate;
-  double least_square = 1e300;
+  double least_square = std::numeric_limits<double>::infinity();
   for (const PoseHypothesis& believed : poses_) {
     const HeadingPrior heading{believed.pose.theta, std::sqrt(believed.covariance(2, 2))};
     const RunningFix fix = running_fix({corner, first.sighting, second, first.since, heading},
                                        std::nullopt, params_.fix);
-    status = fix.status;
-    if (status != RunningFixStatus::found && status != RunningFixStatus::ambiguous) continue;
+    if (fix.status != RunningFixStatus::found && fix.status != RunningFixStatus::ambiguous)
+      continue;
     for (const PoseHypothesis& candidate : fix.candidates) {
       const Agreement with = agreement(candidate, believed);
       least_square = std::min(least_square, with.square);
-      weighed.push_back(candidate);
+      weighed.push_back(with_better_heading(candidate, corner.p_w, heading));
       logs.push_back(std::log(believed.weight) + with.log_density);
     }
   }
-  UpdateResult result{UpdateStatus::degenerate, std::nullopt, least_square, 3};
-  if (weighed.empty()) return result;
-  result.status = UpdateStatus::gated;
+  if (weighed.empty()) return {UpdateStatus::degenerate, std::nullopt, 0.0, 0};
+  UpdateResult result{UpdateStatus::gated, std::nullopt, least_square, 3};
   if (least_square > params_.gate) {
     if (++gated_ >= params_.gated_to_lose) lose();
     return result;

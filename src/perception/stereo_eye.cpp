@@ -12,6 +12,9 @@ constexpr double kNearest_m = 0.06;  // before the cameras
 constexpr double kFarther = 1.4;     // than the field is long: ranges have errors
 constexpr int kAboveHorizon_px = 4;
 constexpr double kSlackRows = 4.0;
+/// σ of what a camera's response to light (gamma, overexposure) does to an edge: it moves towards
+/// the darker side, by the same in both images.
+constexpr double kResponse_px = 0.1;
 constexpr double kTaller = 1.25;  // than a goal is an edge that is none of its
 
 const FieldGoal* first_goal(const std::optional<FieldMap>& field) {
@@ -77,6 +80,7 @@ std::vector<Observation> StereoEye::survey(const Capture& capture) {
     both.left_uv = {corner.u, corner.v};
     both.right_uv = {same->u, same->v};
     both.covariance = Eigen::Vector2d(corner.sigma_px, same->sigma_px).cwiseAbs2().asDiagonal();
+    both.covariance.array() += kResponse_px * kResponse_px;
     seen.corners.push_back(both);
   }
   return {seen};

@@ -51,10 +51,10 @@ class Drive {
     return prior;
   }
 
-  /// A fifth of a second along a circle; the odometry of it, with its errors.
-  OdometryIncrement step() {
+  /// A fifth of a second, along a circle unless said; the odometry of it, with its errors.
+  OdometryIncrement step(double v_mps = 0.3, double w_radps = 0.75) {
     const Stamp to = now_ + Duration::from_seconds(0.2);
-    const OdometryIncrement u = arc_increment(0.3, 0.75, now_, to);
+    const OdometryIncrement u = arc_increment(v_mps, w_radps, now_, to);
     truth_ = move(truth_, u);
     now_ = to;
     const Eigen::Matrix3d S = control_covariance(u, params_.odometry);
@@ -202,27 +202,38 @@ TEST(MlFix, SaysThatItIsLostWhenNothingFitsForLong) {
   EXPECT_TRUE(lost);
 }
 
-TEST(RunningFixLocalizer, HoldsTheDriftOfOdometryDown) {
+TEST(RunningFixLocalizer, HoldsTheDriftOfOdometryDownWhereTheRobotTurns) {
   double fixes = 0.0;
   double odometry = 0.0;
+  double nees = 0.0;
+  int tracking = 0;
+  RunningFixLocalizerParams params;
+  params.pair = pair_of_the_robot(true);
+  params.pair.odometry = {0.05, from_deg(0.3), from_deg(0.3)};
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
-    Drive drive(pair_of_the_robot(true), seed);
-    RunningFixLocalizerParams params;
-    params.pair = pair_of_the_robot(true);
+    Drive drive(params.pair, seed);
     RunningFixLocalizer localizer(drive.field, params);
     const Prior prior = drive.start(0.02, from_deg(3.0));
     localizer.reset({}, prior);
     Pose2 dead = prior.pose;
-    for (int i = 0; i < 250; ++i) {
-      const OdometryIncrement u = drive.step();
+    for (int i = 0; i < 500; ++i) {
+      // Forward by 0.3 m, then once and a quarter round.
+      const OdometryIncrement u = i % 25 < 5 ? drive.step(0.3, 0.0) : drive.step(0.0, 0.625 * kPi);
       dead = move(dead, u);
       localizer.predict(u);
       localizer.update(drive.look());
     }
-    fixes += difference(localizer.belief().pose, drive.truth()).head<2>().squaredNorm();
+    if (localizer.belief().status != BeliefStatus::tracking) continue;
+    ++tracking;
+    const Eigen::Vector3d e = difference(localizer.belief().pose, drive.truth());
+    nees += e.dot(localizer.belief().covariance.ldlt().solve(e)) / 3.0;
+    fixes += e.head<2>().squaredNorm();
     odometry += difference(dead, drive.truth()).head<2>().squaredNorm();
   }
-  EXPECT_LT(fixes, 0.5 * odometry);
+  EXPECT_GE(tracking, 45);
+  EXPECT_LT(fixes, 0.6 * odometry);
+  // 150 degrees of freedom: σ 0.115.
+  EXPECT_NEAR(nees / tracking, 1.0, 4.0 * 0.115);
 }
 
 TEST(RunningFixLocalizer, CannotBeginWithoutAHeading) {

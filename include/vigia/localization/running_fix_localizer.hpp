@@ -23,8 +23,10 @@ struct RunningFixLocalizerParams {
 /// The running fix of Bais et al. on a mission: of the corner that is seen nearest the middle of
 /// the image, the range now and the range some way ago make two circles, which meet in two
 /// candidates. The heading that the displacement takes is the belief's. Between fixes odometry
-/// carries the pose; a fix takes its place where it is the better known. Both candidates are
-/// carried as hypotheses until a later fix tells them apart.
+/// carries the pose; a fix takes its place where it is the better known, its heading of the
+/// bearing's and the belief's. Both candidates are carried as hypotheses until a later fix tells
+/// them apart. Cameras that look where the robot goes see a corner in much the same direction all
+/// the way: fixes come where it turns.
 class RunningFixLocalizer final : public Localizer {
  public:
   RunningFixLocalizer(FieldMap field, const RunningFixLocalizerParams& params);
