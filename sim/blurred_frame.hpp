@@ -21,11 +21,13 @@ class Radiance {
                            std::vector<float>& sum) const = 0;
 };
 
-/// The mean of several instants, with the noise of one exposure.
+/// The mean of several instants or samples of a pixel, blurred by the lens, with the noise of one
+/// exposure.
 class BlurredFrame : public imaging::Frame {
  public:
+  /// @p lens_px: σ of the blur of the mean; 0 where the instants are blurred.
   BlurredFrame(std::vector<std::unique_ptr<Radiance>> instants, int width, int height,
-               const PixelNoise& noise, const ImagingParams& params);
+               const PixelNoise& noise, const ImagingParams& params, double lens_px = 0.0);
 
   int width() const override { return width_; }
   int height() const override { return height_; }
@@ -35,8 +37,11 @@ class BlurredFrame : public imaging::Frame {
                    std::ptrdiff_t stride) const override;
 
  private:
-  /// The mean's rows with noise, as bytes.
-  void finish(const imaging::Window& window, int channel, std::vector<float>& sum,
+  /// The light of @p window, of a channel or grey, through the lens.
+  template <typename Add>
+  std::vector<float> light_of(const imaging::Window& window, const Add& add) const;
+  /// Its rows with noise, as bytes.
+  void finish(const imaging::Window& window, int channel, const std::vector<float>& light,
               unsigned char* out, std::ptrdiff_t stride) const;
 
   std::vector<std::unique_ptr<Radiance>> instants_;
@@ -44,6 +49,7 @@ class BlurredFrame : public imaging::Frame {
   int height_;
   PixelNoise noise_;
   ImagingParams params_;
+  std::vector<float> lens_;  ///< weights from the middle outwards; empty: no blur
 };
 
 }  // namespace vigia::sim

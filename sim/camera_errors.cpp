@@ -83,10 +83,23 @@ Intrinsics CameraErrors::true_intrinsics(const Intrinsics& calibrated, double u)
   return truth;
 }
 
+void CameraErrors::draw_pair(const StereoParams& pair, std::uint64_t seed, double side) {
+  paired_ = true;
+  RandomStream random(seed, "stereo");
+  const Eigen::Vector3d drawn = draw3(random, 1.0);
+  pair_baseline_ = pair.baseline * drawn[0];
+  pair_turn_ = -0.5 * side * pair.vergence * drawn[1];
+  pair_focal_ = pair.focal * drawn[2];
+}
+
 CameraModel CameraErrors::true_model(const CameraModel& calibrated) const {
   constexpr double kMiddle = 0.5;
-  if (const auto* pinhole = std::get_if<Intrinsics>(&calibrated))
-    return true_intrinsics(*pinhole, kMiddle);
+  if (const auto* pinhole = std::get_if<Intrinsics>(&calibrated)) {
+    Intrinsics truth = true_intrinsics(*pinhole, kMiddle);
+    truth.px *= 1.0 + pair_focal_;
+    truth.py *= 1.0 + pair_focal_;
+    return truth;
+  }
   UnifiedOmni omni = std::get<UnifiedOmni>(calibrated);
   const Intrinsics plane =
       true_intrinsics({omni.width, omni.height, omni.px, omni.py, omni.u0, omni.v0, 0.0}, kMiddle);
@@ -101,6 +114,12 @@ CameraMount CameraErrors::true_mount(const Camera& known) const {
   const auto* fixed = std::get_if<FixedMount>(&known.mount);
   const auto askew = fixed != nullptr ? mounting(fixed->rMc.translation()) : std::nullopt;
   CameraMount mount = std::visit(TrueMount{camera_offset_h_, askew}, known.mount);
+  if (fixed != nullptr && paired_) {
+    Eigen::Isometry3d& rMc = std::get<FixedMount>(mount).rMc;
+    rMc.translation().y() *= 1.0 + pair_baseline_;
+    rMc.linear() =
+        Eigen::AngleAxisd(pair_turn_, Eigen::Vector3d::UnitZ()).toRotationMatrix() * rMc.linear();
+  }
   const auto* optics = std::get_if<CameraModel>(&known.optics);
   if (optics != nullptr && std::holds_alternative<UnifiedOmni>(*optics) && fixed != nullptr)
     std::get<FixedMount>(mount).rMc.rotate(

@@ -47,6 +47,12 @@ void describe(ParamVisitor& v, MirrorParams& p) {
   v.number("centre_px", p.centre_px, {0.0, 50.0}, "σ of either coordinate of its middle");
 }
 
+void describe(ParamVisitor& v, StereoParams& p) {
+  v.number("baseline", p.baseline, {0.0, 0.2}, "σ of the relative error of the baseline");
+  v.angle("vergence_deg", p.vergence, {0.0, 10.0}, "σ of the angle between the cameras' axes");
+  v.number("focal", p.focal, {0.0, 0.2}, "σ of the relative error of the focal length of both");
+}
+
 void describe(ParamVisitor& v, BacklashParams& p) {
   v.angle("width_deg", p.width, {0.0, 10.0}, "play of the encoders");
 }
@@ -77,8 +83,8 @@ void describe(ParamVisitor& v, MissingLandmarksParams& p) {
 void describe(ParamVisitor& v, PeopleParams& p) {
   v.choice("kind", p.kind, {"people", "robots"}, "what they look like");
   v.integer("count", p.count, {0, 50}, "of them");
-  v.number("radius_m", p.radius_m, {0.1, 0.6}, "of a person");
-  v.number("height_m", p.height_m, {0.5, 2.5}, "of a person");
+  v.number("radius_m", p.radius_m, {0.03, 0.6}, "of a person");
+  v.number("height_m", p.height_m, {0.05, 2.5}, "of a person");
   v.number("speed_mps", p.speed_mps, {0.0, 3.0}, "of the fastest; the slowest has half of it");
   v.number("pause_probability", p.pause_probability, {0.0, 1.0}, "at the end of each leg");
   v.number("longest_pause_s", p.longest_pause_s, {0.0, 600.0}, "of a pause");
@@ -100,7 +106,8 @@ void describe(ParamVisitor& v, KidnappingParams& p) {
 void describe(ParamVisitor& v, DisturbanceParams& p) {
   enum class All { off, realistic };
   auto all = All::off;
-  v.choice("all", all, {"off", "realistic"}, "of every key that is absent, but `kidnapping`");
+  v.choice("all", all, {"off", "realistic"},
+           "of every key that is absent, but `kidnapping` and `stereo`");
   const bool on = all == All::realistic;
   v.toggle("motion_blur", p.motion_blur, on,
            "a frame is the mean over the camera's motion while the shutter is open");
@@ -111,6 +118,8 @@ void describe(ParamVisitor& v, DisturbanceParams& p) {
            "the table of focal lengths is a little wrong, smoothly over the zoom");
   v.toggle("principal_point", p.principal_point, on, "the optical axis wanders as the lens zooms");
   v.toggle("mirror", p.mirror, on, "an omnidirectional camera is not quite as calibrated");
+  v.given("stereo",
+          [&] { v.toggle("stereo", p.stereo, false, "a stereo pair is not quite as calibrated"); });
   v.toggle("backlash", p.backlash, on, "pan and tilt encoders follow the axes with play");
   v.toggle("wheel_slip", p.wheel_slip, on, "the wheels do not report what the base does");
   v.toggle("map_error", p.map_error, on, "landmarks hang a little off the place that the map has");

@@ -15,7 +15,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kFrame_m = 0.125;    // width of a goal's posts and bar
 constexpr double kBeside_m = 0.45;    // of boards from the carpet
 constexpr double kSpectator_m = 0.9;  // of people from the carpet
 const std::array<std::array<float, 3>, 7> kAdvertColours{{{205.0F, 40.0F, 38.0F},
@@ -47,10 +46,10 @@ Surface upright(const Vector2d& a, const Vector2d& b, double low, double high,
 }
 
 /// A column of square section.
-void add_column(const Vector2d& at, const Vector2d& along, double height, const Material& material,
-                std::vector<Surface>& surfaces) {
+void add_column(const Vector2d& at, const Vector2d& along, double width_m, double height,
+                const Material& material, std::vector<Surface>& surfaces) {
   const Vector2d across(-along.y(), along.x());
-  const double h = 0.5 * kFrame_m;
+  const double h = 0.5 * width_m;
   const std::array<Vector2d, 4> corners{at - h * along - h * across, at + h * along - h * across,
                                         at + h * along + h * across, at - h * along + h * across};
   for (std::size_t i = 0; i < corners.size(); ++i)
@@ -124,10 +123,12 @@ std::vector<Surface> goal_surfaces(const FieldMap& field, const Appearance& look
     surfaces.push_back(upright(goal.from, goal.from + deep, 0.0, goal.height_m, panel));
     surfaces.push_back(upright(goal.from + deep, goal.to + deep, 0.0, goal.height_m, panel));
     surfaces.push_back(upright(goal.to + deep, goal.to, 0.0, goal.height_m, panel));
-    const double out = 0.5 * kFrame_m;  // the mouth lies between the posts
-    add_column(goal.from - out * along, along, goal.height_m, frame, surfaces);
-    add_column(goal.to + out * along, along, goal.height_m, frame, surfaces);
-    surfaces.push_back(upright(goal.from, goal.to, goal.height_m - kFrame_m, goal.height_m, frame));
+    const double wide = goal.frame_m;
+    if (wide <= 0.0) continue;
+    const double out = 0.5 * wide;  // the mouth lies between the posts
+    add_column(goal.from - out * along, along, wide, goal.height_m, frame, surfaces);
+    add_column(goal.to + out * along, along, wide, goal.height_m, frame, surfaces);
+    surfaces.push_back(upright(goal.from, goal.to, goal.height_m - wide, goal.height_m, frame));
   }
   return surfaces;
 }

@@ -86,6 +86,11 @@ void describe_camera(ParamVisitor& v, Sensor& sensor, ImagingParams& imaging) {
            About("σ of a pixel's noise").in("grey levels"));
   v.number("blur_px", imaging.blur_px, {0.0, 10.0}, "σ of the optical blur");
   v.boolean("colour", imaging.colour, "whether it sees colours");
+  v.given("samples", [&] {
+    v.integer("samples", imaging.samples, {1, 256},
+              "of which the light of a pixel's square is the mean; from 2 on blur_px blurs every "
+              "outline. Without the key surfaces have sharp outlines");
+  });
 }
 
 /// Radius in normalised image coordinates beyond which the distortion folds the image over must

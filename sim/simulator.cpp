@@ -77,8 +77,11 @@ Simulator::Simulator(const RobotSetup& setup, const WorldMap& world,
   if (setup_.directed_camera() != nullptr)
     robot_.set_zoom_range(setup_.zoom().min_zoom_mm(), setup_.zoom().max_zoom_mm());
   robot_.set_camera(setup_.cameras.front().camera.mount);
+  const auto pair = stereo_cameras(setup_.rig());
   for (const CameraSetup& camera : setup_.cameras) {
-    const CameraErrors errors(disturbances, seed, camera.camera.id);
+    CameraErrors errors(disturbances, seed, camera.camera.id);
+    if (pair && disturbances.stereo)
+      errors.draw_pair(*disturbances.stereo, seed, camera.camera.id == pair->left ? 1.0 : -1.0);
     cameras_.push_back({camera, errors, errors.true_mount(camera.camera)});
   }
   disturb(disturbances, seed);

@@ -18,11 +18,19 @@ constexpr std::array<double, 5> kInstants_s{0.1, 0.25, 0.5, 0.75, kForesight_s};
 constexpr double kWalkFromWall = 0.05;   // m, beyond the radius
 constexpr double kMinDistance = 0.1;     // m, from the robot's hull when there is no other way
 constexpr double kTouching = 0.02;       // m, from the robot's hull: nobody steps nearer
-constexpr double kFromEachOther = 0.15;  // m, between hulls
+constexpr double kFromEachOther = 0.15;  // m, between hulls, and never more than a radius
 constexpr double kAtGoal = 0.15;         // m
-constexpr double kFromStart = 1.2;       // m, from the robot's hull when the drive begins
+constexpr double kFromStart = 1.2;       // m, from the robot's hull when the drive begins …
+constexpr double kFromStartRadii = 6.0;  // … and never more than so many radii
+constexpr double kLeg = 1.0;             // m, of a way at least …
+constexpr double kLegRadii = 8.0;        // … and never more than so many radii
 constexpr double kPatience = 2.0;        // times what the leg takes undisturbed
 constexpr double kTurnRate = 4.0;        // rad/s
+
+/// What small ones need: less room than people.
+double room_between(const PeopleParams& params) {
+  return std::min(kFromEachOther, params.radius_m);
+}
 
 }  // namespace
 
@@ -50,10 +58,11 @@ Vector2d Walkers::free_place(const Bystander& robot) {
     const double y = random_.uniform(low.y(), high.y());
     const Vector2d p(x, y);
     double room = plan_.clearance(p) - params_.radius_m - kWalkFromWall;
-    room = std::min(room,
-                    (p - robot.position).norm() - robot.radius_m - params_.radius_m - kFromStart);
+    room = std::min(room, (p - robot.position).norm() - robot.radius_m - params_.radius_m -
+                              std::min(kFromStart, kFromStartRadii * params_.radius_m));
     for (const Walker& other : walkers_)
-      room = std::min(room, (p - other.position).norm() - 2.0 * params_.radius_m - kFromEachOther);
+      room = std::min(room,
+                      (p - other.position).norm() - 2.0 * params_.radius_m - room_between(params_));
     if (room > best_room) {
       best = p;
       best_room = room;
@@ -80,7 +89,9 @@ void Walkers::choose_goal(Walker& walker) {
     const double x = random_.uniform(low.x(), high.x());
     const double y = random_.uniform(low.y(), high.y());
     const Vector2d p(x, y);
-    if ((p - walker.position).norm() > 1.0 && straight_way(walker.position, p)) walker.goal = p;
+    if ((p - walker.position).norm() > std::min(kLeg, kLegRadii * params_.radius_m) &&
+        straight_way(walker.position, p))
+      walker.goal = p;
   }
   walker.patience_s =
       2.0 + kPatience * (walker.goal - walker.position).norm() / std::max(walker.pace, 0.05);
@@ -96,7 +107,7 @@ double Walkers::room_on(const Walker& walker, const Vector2d& velocity, const By
     for (const Walker& other : walkers_) {
       if (&other == &walker) continue;
       room = std::min(room, (p - other.position - other.velocity * t).norm() -
-                                2.0 * params_.radius_m - kFromEachOther);
+                                2.0 * params_.radius_m - room_between(params_));
     }
     if (velocity.squaredNorm() > 0.0)
       room = std::min(room, plan_.clearance(p) - params_.radius_m - kWalkFromWall);

@@ -20,6 +20,12 @@ void describe(ParamVisitor& v, SensorNoise& p) {
            "relative σ of the focal length, constant during a look");
 }
 
+void describe(ParamVisitor& v, StereoCalibrationNoise& p) {
+  v.number("baseline", p.baseline, {0.0, 0.2}, "σ of the relative error of the baseline");
+  v.angle("vergence_deg", p.vergence, {0.0, 10.0}, "σ of the angle between the cameras' axes");
+  v.number("focal", p.focal, {0.0, 0.2}, "σ of the relative error of the focal length of both");
+}
+
 void describe(ParamVisitor& v, NoiseModel& p) {
   v.map("odometry", p.odometry, About("of the odometry").otherwise("the robot's"));
   v.map("sensor", p.sensor, About("of the head and the zoom").otherwise("the robot's"));
@@ -27,6 +33,9 @@ void describe(ParamVisitor& v, NoiseModel& p) {
            "σ of what the model of a disc's centre, or of a point, leaves out");
   v.number("size_floor", p.size_floor, {0.0, 1.0},
            "relative σ of what the model of a disc's size leaves out");
+  v.given("stereo", [&] {
+    v.map("stereo", p.stereo, "of a stereo pair's calibration, constant along a drive");
+  });
 }
 
 }  // namespace vigia

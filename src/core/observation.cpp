@@ -49,7 +49,8 @@ ImageExtent image_extent(const Observation& observation, const Landmark* landmar
                  },
                  [&](const PointsObservation& seen) { return extent_of(seen, landmark); },
                  [](const FieldObservation&) { return ImageExtent{}; },
-                 [](const PatchesObservation&) { return ImageExtent{}; }},
+                 [](const PatchesObservation&) { return ImageExtent{}; },
+                 [](const StereoObservation&) { return ImageExtent{}; }},
       observation);
 }
 
@@ -57,7 +58,8 @@ bool shows_landmark(const Observation& observation) {
   return std::visit(Overloaded{[](const EllipseObservation&) { return true; },
                                [](const PointsObservation&) { return true; },
                                [](const FieldObservation&) { return false; },
-                               [](const PatchesObservation&) { return false; }},
+                               [](const PatchesObservation&) { return false; },
+                               [](const StereoObservation&) { return false; }},
                     observation);
 }
 

@@ -91,7 +91,11 @@ void describe_goal(ParamVisitor& v, FieldMap& map) {
   v.vector("from_m", goal.from, kOnField, About("one post of its mouth").required());
   v.vector("to_m", goal.to, kOnField, About("the other").required());
   v.number("depth_m", goal.depth_m, {0.05, 5.0}, "from the mouth to its back");
-  v.number("height_m", goal.height_m, {0.1, 5.0}, "of the goal");
+  v.number("height_m", goal.height_m, {0.02, 5.0}, "of the goal");
+  v.given("frame_m", [&] {
+    v.number("frame_m", goal.frame_m, {0.0, 0.5},
+             "width of its white posts and bar; 0: it has none, as where walls end at its mouth");
+  });
   if (v.reader() == nullptr) return;
   const MapReader& reader = *v.reader();
   if ((goal.to - goal.from).norm() < 0.2)
@@ -120,11 +124,11 @@ void describe_post(ParamVisitor& v, FieldMap& map) {
 }  // namespace
 
 void describe(ParamVisitor& v, FieldMap& map) {
-  v.number("length_m", map.length_m, {2.0, 60.0}, About("between the goal lines").required());
-  v.number("width_m", map.width_m, {2.0, 60.0}, About("between the touch lines").required());
+  v.number("length_m", map.length_m, {0.5, 60.0}, About("between the goal lines").required());
+  v.number("width_m", map.width_m, {0.5, 60.0}, About("between the touch lines").required());
   v.number("margin_m", map.margin_m, {0.0, 10.0}, "of carpet round about");
   double width = 0.125;
-  v.number("line_width_m", width, {0.01, 0.5}, "of every line and arc");
+  v.number("line_width_m", width, {0.002, 0.5}, "of every line and arc");
   v.each("lines", "straight lines, painted about these points",
          [&] { describe_line(v, map, width); });
   v.each("arcs", "arcs of circles", [&] { describe_arc(v, map, width); });

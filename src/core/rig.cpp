@@ -71,6 +71,35 @@ const Camera* directed_camera(const Rig& rig) {
   return found == rig.cameras.end() ? nullptr : &*found;
 }
 
+std::optional<StereoCameras> stereo_cameras(const Rig& rig) {
+  constexpr double kAlike = 1e-9;
+  if (rig.cameras.size() != 2) return std::nullopt;
+  const Camera* const left = &rig.cameras[0];
+  const Camera* const right = &rig.cameras[1];
+  for (const Camera* camera : {left, right}) {
+    const auto* fixed = std::get_if<FixedMount>(&camera->mount);
+    const auto* model = std::get_if<CameraModel>(&camera->optics);
+    if (fixed == nullptr || model == nullptr || !std::holds_alternative<Intrinsics>(*model) ||
+        !fixed->rMc.linear().isApprox(head_from_camera(), kAlike))
+      return std::nullopt;
+  }
+  const auto place = [](const Camera* camera) {
+    return Eigen::Vector3d(std::get<FixedMount>(camera->mount).rMc.translation());
+  };
+  const auto lens = [](const Camera* camera) {
+    return std::get<Intrinsics>(std::get<CameraModel>(camera->optics));
+  };
+  const Eigen::Vector3d mirrored = place(right).cwiseProduct(Eigen::Vector3d(1.0, -1.0, 1.0));
+  const Intrinsics k = lens(left);
+  const Intrinsics other = lens(right);
+  if ((place(left) - mirrored).norm() > kAlike || place(left).y() < kAlike || k.px != other.px ||
+      k.u0 != other.u0 || k.v0 != other.v0 || k.kdu != other.kdu || k.width != other.width ||
+      k.height != other.height)
+    return std::nullopt;
+  return StereoCameras{left->id,        right->id,       2.0 * place(left).y(),
+                       place(left).x(), place(left).z(), k};
+}
+
 const Camera* Rig::find(CameraId id) const {
   const auto found = std::find_if(cameras.begin(), cameras.end(),
                                   [id](const Camera& camera) { return camera.id == id; });

@@ -23,6 +23,17 @@ std::optional<EstimatorSetup::Ceiling> ceiling_of(const mission::MissionSetup& s
   return EstimatorSetup::Ceiling{*camera, *setup.world.ceiling};
 }
 
+/// With the errors of calibration that the simulator truly draws.
+std::optional<localization::CornerFilterParams> corners_of(const mission::MissionSetup& setup) {
+  auto params = mission::corner_filter_params(setup);
+  if (!params) return std::nullopt;
+  const auto& drawn = setup.disturbances.stereo;
+  params->calibration_sigma =
+      drawn ? localization::StereoErrors{drawn->baseline, drawn->vergence, drawn->focal}
+            : localization::StereoErrors{};
+  return params;
+}
+
 EstimatorSetup estimator_setup(const mission::MissionSetup& setup) {
   return {setup.world.landmarks,
           setup.on_ground(),
@@ -31,7 +42,8 @@ EstimatorSetup estimator_setup(const mission::MissionSetup& setup) {
           setup.prior ? setup.prior->covariance : covariance_of_anywhere(setup.world.plan),
           setup.prior.has_value(),
           setup.world.field,
-          ceiling_of(setup)};
+          ceiling_of(setup),
+          corners_of(setup)};
 }
 
 }  // namespace

@@ -33,6 +33,14 @@ int& count_of(LocalizerScore& score, localization::UpdateStatus status) {
 EstimatorScorer::EstimatorScorer(EstimatorSetup setup)
     : setup_(std::move(setup)), bound_(setup_.prior_covariance, setup_.on_ground, setup_.sensor) {
   if (setup_.field) field_.emplace(*setup_.field);
+  if (setup_.corners && setup_.field) {
+    localization::CornerFilterParams exact = *setup_.corners;
+    exact.odometry = setup_.odometry;
+    exact.gate = 1e12;  // of a corner its covariance counts, not where it is
+    exact.iterations = 1;
+    corners_.emplace(*setup_.field, exact);
+    corners_->reset({}, {{}, setup_.prior_covariance});
+  }
   if (!setup_.ceiling) return;
   localization::CeilingFilterParams params;
   params.odometry = setup_.odometry;
@@ -51,6 +59,10 @@ void EstimatorScorer::add(const mission::EstimatorTick& tick, std::size_t locali
     if (ceiling_) {
       ceiling_->place({truth.pose_before, {}, {}});
       ceiling_->predict(u);
+    }
+    if (corners_) {
+      corners_->relinearise(truth.pose_before);
+      corners_->predict(u);
     }
   }
   const auto fused = count_updates(tick, localizer);
@@ -84,6 +96,11 @@ void EstimatorScorer::bound_by(const Observation& observation,
   }
   if (const auto* seen = std::get_if<PatchesObservation>(&observation); seen && ceiling_) {
     ceiling_->inform({truth.pose, {}, {}}, seen->patches);
+    return;
+  }
+  if (const auto* seen = std::get_if<StereoObservation>(&observation); seen && corners_) {
+    corners_->relinearise(truth.pose);
+    corners_->update(seen->corners);
     return;
   }
   const Landmark* landmark =
@@ -125,6 +142,7 @@ void EstimatorScorer::add_errors(const mission::EstimatorTick& tick, const Belie
 }
 
 Eigen::Matrix3d EstimatorScorer::bound_covariance() const {
+  if (corners_) return corners_->belief().covariance;
   return ceiling_ ? ceiling_->belief().covariance : bound_.covariance();
 }
 

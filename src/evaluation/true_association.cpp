@@ -40,7 +40,8 @@ const Landmark* true_landmark(const Observation& observation, const LandmarkMap&
                  },
                  [&](const PointsObservation& seen) { return map.find(seen.landmark); },
                  [](const FieldObservation&) -> const Landmark* { return nullptr; },
-                 [](const PatchesObservation&) -> const Landmark* { return nullptr; }},
+                 [](const PatchesObservation&) -> const Landmark* { return nullptr; },
+                 [](const StereoObservation&) -> const Landmark* { return nullptr; }},
       observation);
 }
 

@@ -87,7 +87,8 @@ std::optional<LandmarkId> named_landmark(const Observation& observation) {
       Overloaded{[](const EllipseObservation&) { return std::optional<LandmarkId>(); },
                  [](const PointsObservation& seen) { return std::optional(seen.landmark); },
                  [](const FieldObservation&) { return std::optional<LandmarkId>(); },
-                 [](const PatchesObservation&) { return std::optional<LandmarkId>(); }},
+                 [](const PatchesObservation&) { return std::optional<LandmarkId>(); },
+                 [](const StereoObservation&) { return std::optional<LandmarkId>(); }},
       observation);
 }
 
@@ -118,7 +119,8 @@ std::optional<Eigen::Vector2d> centre_shift(const Observation& observation,
                    return Eigen::Vector2d(image_extent(predicted).centre - *centre);
                  },
                  [](const FieldObservation&) { return std::optional<Eigen::Vector2d>(); },
-                 [](const PatchesObservation&) { return std::optional<Eigen::Vector2d>(); }},
+                 [](const PatchesObservation&) { return std::optional<Eigen::Vector2d>(); },
+                 [](const StereoObservation&) { return std::optional<Eigen::Vector2d>(); }},
       observation);
 }
 
@@ -269,6 +271,7 @@ UpdateResult BearingOnlyLocalizer::update(const Observation& observation) {
   const Shot& shot = shot_of(observation);
   const bool usable = std::visit(Overloaded{[](const FieldObservation&) { return false; },
                                             [](const PatchesObservation&) { return false; },
+                                            [](const StereoObservation&) { return false; },
                                             [](const auto& seen) { return is_usable(seen); }},
                                  observation);
   if (!usable) return {UpdateStatus::degenerate, std::nullopt, 0.0, 0};

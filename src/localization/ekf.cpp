@@ -89,6 +89,7 @@ void EkfLocalizer::predict(const OdometryIncrement& increment) {
 UpdateResult EkfLocalizer::update(const Observation& observation) {
   const bool usable = std::visit(Overloaded{[](const FieldObservation&) { return false; },
                                             [](const PatchesObservation&) { return false; },
+                                            [](const StereoObservation&) { return false; },
                                             [](const auto& seen) { return is_usable(seen); }},
                                  observation);
   UpdateResult result{UpdateStatus::degenerate, std::nullopt, 0.0, 0};

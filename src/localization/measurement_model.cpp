@@ -22,6 +22,7 @@ Association MeasurementModel::associate(const Observation& observation,
                                         const LookState& state) const {
   return std::visit(Overloaded{[](const FieldObservation&) { return Association{}; },
                                [](const PatchesObservation&) { return Association{}; },
+                               [](const StereoObservation&) { return Association{}; },
                                [&](const auto& seen) {
                                  auto found = localization::associate(*this, seen, state);
                                  Association association{found.result, std::nullopt};
@@ -35,6 +36,7 @@ std::optional<Match> MeasurementModel::match(const Observation& observation,
                                              const Landmark& landmark) const {
   return std::visit(Overloaded{[](const FieldObservation&) { return std::optional<Match>(); },
                                [](const PatchesObservation&) { return std::optional<Match>(); },
+                               [](const StereoObservation&) { return std::optional<Match>(); },
                                [&](const auto& seen) -> std::optional<Match> {
                                  return localization::match(*this, seen, landmark);
                                }},
@@ -46,6 +48,7 @@ std::optional<double> MeasurementModel::log_likelihood(const Observation& observ
   return std::visit(
       Overloaded{[](const FieldObservation&) { return std::optional<double>(); },
                  [](const PatchesObservation&) { return std::optional<double>(); },
+                 [](const StereoObservation&) { return std::optional<double>(); },
                  [&](const auto& seen) { return localization::log_likelihood(*this, seen, pose); }},
       observation);
 }

@@ -381,6 +381,10 @@ StationFix fix_of(const StationChain& chain, const std::vector<Mode>& modes,
   fix.calibration = errors_of(chain, best.descent.state);
   fix.calibration_covariance =
       sigma.asDiagonal() * best.covariance.block<3, 3>(kPoseSize, kPoseSize) * sigma.asDiagonal();
+  Eigen::Matrix<double, 6, 1> units = Eigen::Matrix<double, 6, 1>::Ones();
+  units.tail<3>() = sigma;
+  fix.joint_covariance =
+      units.asDiagonal() * best.covariance.topLeftCorner<6, 6>() * units.asDiagonal();
   fix.chi_square = best.descent.at.r.squaredNorm();
   fix.sin_gamma = greatest_sin_gamma(chain, best.descent.state);
   if (!best.descent.converged)

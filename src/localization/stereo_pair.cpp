@@ -15,7 +15,8 @@ struct Column {
 std::optional<Column> column_of(const StereoPair& pair, const StereoErrors& errors, double side,
                                 const Eigen::Vector2d& p_r) {
   const double focal = pair.focal_px * (1.0 + errors.focal);
-  const Eigen::Vector2d centre(0.0, 0.5 * side * pair.baseline_m * (1.0 + errors.baseline));
+  const Eigen::Vector2d centre(pair.forward_m,
+                               0.5 * side * pair.baseline_m * (1.0 + errors.baseline));
   const double yaw = -0.5 * side * errors.vergence;
   Eigen::Matrix2d cRr;  // the camera's axis is its x here
   cRr << std::cos(yaw), std::sin(yaw), -std::sin(yaw), std::cos(yaw);
@@ -33,6 +34,10 @@ std::optional<Column> column_of(const StereoPair& pair, const StereoErrors& erro
 }
 
 }  // namespace
+
+StereoPair stereo_pair(const StereoCameras& cameras) {
+  return {cameras.intrinsics.px, cameras.intrinsics.u0, cameras.baseline_m, cameras.forward_m};
+}
 
 std::optional<StereoImage> stereo_image(const StereoPair& pair, const StereoErrors& errors,
                                         const Eigen::Vector2d& p_r) {
@@ -57,7 +62,8 @@ std::optional<StereoPoint> triangulate(const StereoPair& pair, const StereoColum
   Eigen::Matrix2d dp_dcolumns;
   dp_dcolumns << -dx, dx,  //
       -0.5 * x / pair.focal_px - slope * dx, -0.5 * x / pair.focal_px + slope * dx;
-  return StereoPoint{{x, slope * x}, sigma_px * sigma_px * dp_dcolumns * dp_dcolumns.transpose()};
+  return StereoPoint{{x + pair.forward_m, slope * x},
+                     sigma_px * sigma_px * dp_dcolumns * dp_dcolumns.transpose()};
 }
 
 PolarSighting polar(const StereoPoint& point) {

@@ -8,8 +8,10 @@
 #include "vigia/localization/ceiling_localizer.hpp"
 #include "vigia/localization/ekf.hpp"
 #include "vigia/localization/field_localizer.hpp"
+#include "vigia/localization/ml_fix_localizer.hpp"
 #include "vigia/localization/odometry_localizer.hpp"
 #include "vigia/localization/pattern_fix.hpp"
+#include "vigia/localization/running_fix_localizer.hpp"
 
 namespace vigia::mission {
 namespace {
@@ -30,6 +32,10 @@ bool has_field(const MissionSetup& setup) {
 
 bool has_ceiling(const MissionSetup& setup) {
   return ceiling_camera(setup).has_value();
+}
+
+bool has_corners(const MissionSetup& setup) {
+  return corner_filter_params(setup).has_value();
 }
 
 bool has_patterns(const MissionSetup& setup) {
@@ -84,6 +90,20 @@ LocalizerPtr make_ceiling(const MissionSetup& setup, std::uint64_t /*seed*/) {
   return std::make_unique<localization::CeilingLocalizer>(
       ceiling_camera(setup).value_or(localization::CeilingCamera{}),
       setup.world.ceiling.value_or(CeilingGrid{}), params);
+}
+
+LocalizerPtr make_running_fix(const MissionSetup& setup, std::uint64_t /*seed*/) {
+  localization::RunningFixLocalizerParams params;
+  params.pair = corner_filter_params(setup).value_or(localization::CornerFilterParams{});
+  return std::make_unique<localization::RunningFixLocalizer>(setup.world.field.value_or(FieldMap{}),
+                                                             params);
+}
+
+LocalizerPtr make_ml_fix(const MissionSetup& setup, std::uint64_t /*seed*/) {
+  localization::MlFixParams params;
+  params.filter = corner_filter_params(setup).value_or(localization::CornerFilterParams{});
+  return std::make_unique<localization::MlFixLocalizer>(setup.world.field.value_or(FieldMap{}),
+                                                        params);
 }
 
 LocalizerPtr make_bearing_only(const MissionSetup& setup, std::uint64_t /*seed*/) {
@@ -145,6 +165,22 @@ const std::vector<LocalizerEntry>& localizers() {
        FirstPose::prior,
        &has_ceiling,
        &make_ceiling},
+      {{"running_fix",
+        "a goal's corner ranged from two points of the way: two circles, the heading by odometry "
+        "(Bais)",
+        "a level stereo pair, and a field with goals in the world"},
+       true,
+       FirstPose::prior,
+       &has_corners,
+       &make_running_fix},
+      {{"ml_fix",
+        "range and bearing of goals' corners by maximum likelihood, the errors of the pair's "
+        "calibration as states (after Bais)",
+        "a level stereo pair, and a field with goals in the world"},
+       true,
+       FirstPose::itself,
+       &has_corners,
+       &make_ml_fix},
   };
   return table;
 }
@@ -156,6 +192,18 @@ std::optional<localization::CeilingCamera> ceiling_camera(const MissionSetup& se
       return localization::CeilingCamera{camera.camera.model(0.0), camera.camera.rMc({}),
                                          setup.world.ceiling->height_m};
   return std::nullopt;
+}
+
+std::optional<localization::CornerFilterParams> corner_filter_params(const MissionSetup& setup) {
+  const auto cameras = stereo_cameras(setup.robot.rig());
+  if (!cameras || !setup.world.field || setup.world.field->goals.empty()) return std::nullopt;
+  localization::CornerFilterParams params;
+  params.pair = localization::stereo_pair(*cameras);
+  params.lens = cameras->intrinsics;
+  const StereoCalibrationNoise& noise = setup.noise.stereo;
+  params.calibration_sigma = {noise.baseline, noise.vergence, noise.focal};
+  params.odometry = setup.noise.odometry;
+  return params;
 }
 
 std::vector<std::string> usual_localizers(const MissionSetup& setup) {

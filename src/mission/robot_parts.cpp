@@ -7,7 +7,8 @@
 
 namespace vigia::mission {
 
-const char* eye_of(const Camera& camera, const WorldMap& world) {
+const char* eye_of(const Camera& camera, const WorldMap& world, const Rig& rig) {
+  if (world.field && !world.field->goals.empty() && stereo_cameras(rig)) return "stereo";
   if (world.ceiling && looks_up(camera)) return "ceiling";
   return zoom_calibration(camera.optics) ? "landmark" : "field";
 }
@@ -15,10 +16,12 @@ const char* eye_of(const Camera& camera, const WorldMap& world) {
 std::vector<CameraFeed> make_feeds(const MissionSetup& setup, const Rig& rig, Duration delay,
                                    Duration processing) {
   const Camera* directed = directed_camera(rig);
+  const auto pair = stereo_cameras(rig);
   std::vector<CameraFeed> feeds;
-  for (const Camera& camera : rig.cameras)
+  for (const Camera& camera : rig.cameras) {
+    const bool right = pair && camera.id == pair->right;
     feeds.emplace_back(camera, delay, processing,
-                       find_name(perception::eyes(), eye_of(camera, setup.world))
+                       find_name(perception::eyes(), eye_of(camera, setup.world, rig))
                            ->make({setup.world.landmarks,
                                    setup.on_ground(),
                                    setup.noise.sensor,
@@ -26,7 +29,9 @@ std::vector<CameraFeed> make_feeds(const MissionSetup& setup, const Rig& rig, Du
                                    &camera == directed,
                                    setup.world.field ? &*setup.world.field : nullptr,
                                    {setup.robot.robot.radius_m, setup.robot.robot.body_height_m},
-                                   setup.world.ceiling ? &*setup.world.ceiling : nullptr}));
+                                   setup.world.ceiling ? &*setup.world.ceiling : nullptr,
+                                   right ? &feeds.front().eye() : nullptr}));
+  }
   return feeds;
 }
 

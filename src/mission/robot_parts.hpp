@@ -15,9 +15,10 @@ namespace vigia::mission {
 // What looks through a robot's cameras, where it looks and what it does when it is lost, as its rig
 // allows. What is made refers to the setup and the log.
 
-/// The name of the eye that looks through it: one that looks up at a patched ceiling finds patches,
+/// The name of the eye that looks through a camera of the rig: a stereo pair finds the corners of a
+/// field's goals, one that looks up at a patched ceiling finds patches,
 /// other perspective cameras look for landmarks, others for a field.
-const char* eye_of(const Camera& camera, const WorldMap& world);
+const char* eye_of(const Camera& camera, const WorldMap& world, const Rig& rig);
 
 /// One for each camera of the rig, in its order. @p delay: of every delivery. @p processing: of a
 /// frame.

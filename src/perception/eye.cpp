@@ -3,6 +3,7 @@
 #include "ceiling_eye.hpp"
 #include "field_eye.hpp"
 #include "landmark_eye.hpp"
+#include "stereo_eye.hpp"
 
 namespace vigia::perception {
 namespace {
@@ -24,7 +25,11 @@ const std::vector<EyeEntry>& eyes() {
        make<FieldEye>},
       {{"ceiling", "finds the patches of a ceiling",
         "a perspective camera, fixed to the base, that looks up; a ceiling in the world"},
-       make<CeilingEye>}};
+       make<CeilingEye>},
+      {{"stereo", "finds the corners of goals in both images of a pair",
+        "two level perspective cameras in colour, fixed to the base, alike and side by side; a "
+        "field with goals in the world"},
+       make<StereoEye>}};
   return entries;
 }
 

@@ -63,6 +63,7 @@ struct FieldGoal {
   Eigen::Vector2d to = Eigen::Vector2d::Zero();
   double depth_m = 0.5;
   double height_m = 1.0;
+  double frame_m = 0.125;  ///< width of its white posts and bar; 0: it has none
   Eigen::Vector2d centre() const { return 0.5 * (from + to); }
 };
 

@@ -5,6 +5,13 @@
 
 namespace vigia {
 
+/// What the calibration of a stereo pair may miss (σ, constant along a drive); 0: it is exact.
+struct StereoCalibrationNoise {
+  double baseline = 0.0;  ///< relative
+  double vergence = 0.0;  ///< of the axes towards each other, rad
+  double focal = 0.0;     ///< of both cameras, relative
+};
+
 /// What a robot believes of its sensors' errors: the one model from which filter, search, planner,
 /// tracker's prediction and gaze take theirs. A consumer's own parameters may override it.
 struct NoiseModel {
@@ -14,6 +21,7 @@ struct NoiseModel {
   /// a disc's centre or a point in px, and a disc's relative size.
   double centre_floor_px = 0.002;
   double size_floor = 5e-5;
+  StereoCalibrationNoise stereo;  ///< of a pair of cameras
 };
 
 }  // namespace vigia

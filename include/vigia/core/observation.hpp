@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "vigia/core/field_scan.hpp"
+#include "vigia/core/goal_corner.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/core/patch_image.hpp"
 #include "vigia/core/shot.hpp"
@@ -65,9 +66,16 @@ struct PatchesObservation {
   std::vector<PatchImage> patches;
 };
 
+/// What the two images of a stereo pair, exposed together, show of the goals' corners.
+struct StereoObservation {
+  Shot shot;   ///< of the left camera
+  Shot right;  ///< of the right camera
+  std::vector<StereoCorner> corners;
+};
+
 /// What eyes hand to localization: closed by the geometry of the feature.
-using Observation =
-    std::variant<EllipseObservation, PointsObservation, FieldObservation, PatchesObservation>;
+using Observation = std::variant<EllipseObservation, PointsObservation, FieldObservation,
+                                 PatchesObservation, StereoObservation>;
 
 /// Where a landmark lies in the image and how wide it is.
 struct ImageExtent {
@@ -75,8 +83,9 @@ struct ImageExtent {
   double radius_px = 0.0;  ///< of extent_radius(): the longer semi-axis of a slanted landmark
 };
 
-/// The extent that an observation shows; a field's or a ceiling's has none and is empty. A pattern
-/// of which one ring alone is seen is scaled up to the whole by @p landmark, where it is known.
+/// The extent that an observation shows; a field's, a ceiling's or a pair's has none and is empty.
+/// A pattern of which one ring alone is seen is scaled up to the whole by @p landmark, where it is
+/// known.
 ImageExtent image_extent(const Observation& observation, const Landmark* landmark = nullptr);
 
 /// Whether it is the image of a landmark of the map.

@@ -64,6 +64,20 @@ bool looks_up(const Camera& camera);
 /// without, or nullptr.
 const Camera* directed_camera(const Rig& rig);
 
+/// A pair of level pinhole cameras on the base that look ahead, alike and at one height, to the
+/// left and the right of the base's x axis by half the baseline, the left one first.
+struct StereoCameras {
+  CameraId left = 0;
+  CameraId right = 1;
+  double baseline_m = 0.0;
+  double forward_m = 0.0;  ///< x of their centres
+  double height_m = 0.0;
+  Intrinsics intrinsics;  ///< of both
+};
+
+/// The pair of a rig that is nothing else, if it is one.
+std::optional<StereoCameras> stereo_cameras(const Rig& rig);
+
 /// What places a robot's cameras in the world.
 struct RigOnGround {
   Rig rig;

@@ -11,6 +11,7 @@
 #include "vigia/evaluation/loss_score.hpp"
 #include "vigia/evaluation/pcrlb.hpp"
 #include "vigia/localization/ceiling_filter.hpp"
+#include "vigia/localization/corner_filter.hpp"
 #include "vigia/localization/field_model.hpp"
 #include "vigia/mission/estimator_tick.hpp"
 
@@ -77,6 +78,8 @@ struct EstimatorSetup {
     CeilingGrid grid;
   };
   std::optional<Ceiling> ceiling = std::nullopt;
+  /// A stereo pair on a field with goals, and what its calibration may miss.
+  std::optional<localization::CornerFilterParams> corners = std::nullopt;
 };
 
 /// Scores one localizer of a drive, simulated or recorded, by what an estimator's ticks hold:
@@ -105,6 +108,9 @@ class EstimatorScorer {
   PosteriorBound bound_;
   /// Where there is a ceiling, the bound instead: placement errors are states of it.
   std::optional<localization::CeilingFilter> ceiling_;
+  /// Where there is a stereo pair, the bound instead: the errors of its calibration are states of
+  /// it.
+  std::optional<localization::CornerFilter> corners_;
   LossScorer losses_;
   LocalizerScore score_;
   /// Over ticks with the truth.

@@ -61,6 +61,8 @@ struct StationFix {
   std::vector<PoseHypothesis> hypotheses;
   StereoErrors calibration;  ///< as estimated with the likelier
   Eigen::Matrix3d calibration_covariance = Eigen::Matrix3d::Zero();
+  /// Of (x, y, θ, baseline, vergence, focal) with the likelier, by the curvature at its mode.
+  Eigen::Matrix<double, 6, 6> joint_covariance = Eigen::Matrix<double, 6, 6>::Zero();
   double sin_gamma = 0.0;
   double chi_square = 0.0;  ///< of all residuals, priors included
 };

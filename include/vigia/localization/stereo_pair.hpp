@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 
+#include "vigia/core/rig.hpp"
+
 namespace vigia::localization {
 
 /// A level pair of cameras at the height of what they measure: along the robot's x axis they look,
@@ -12,7 +14,11 @@ struct StereoPair {
   double focal_px = 277.1;
   double u0 = 159.5;  ///< column of the axes
   double baseline_m = 0.03;
+  double forward_m = 0.0;  ///< x of both cameras in the robot's frame
 };
+
+/// The pair that a rig has, by its calibration.
+StereoPair stereo_pair(const StereoCameras& cameras);
 
 /// What the calibration of a pair misses: the true baseline is (1 + baseline) times the calibrated
 /// one, the true focal length (1 + focal) times, and the cameras are each turned inwards by half of

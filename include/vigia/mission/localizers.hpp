@@ -8,6 +8,7 @@
 
 #include "vigia/core/name_table.hpp"
 #include "vigia/localization/ceiling_model.hpp"
+#include "vigia/localization/corner_filter.hpp"
 #include "vigia/localization/localizer.hpp"
 #include "vigia/mission/setup.hpp"
 
@@ -37,6 +38,10 @@ bool needs_prior(const LocalizerEntry& entry, const MissionSetup& setup);
 
 /// The first camera that looks up at the world's ceiling of patches, if there are both.
 std::optional<localization::CeilingCamera> ceiling_camera(const MissionSetup& setup);
+
+/// What the corners of the goals are measured with, where the robot's cameras are a stereo pair and
+/// the world has a field with goals.
+std::optional<localization::CornerFilterParams> corner_filter_params(const MissionSetup& setup);
 
 /// The usual ones that fit and can start.
 std::vector<std::string> usual_localizers(const MissionSetup& setup);

@@ -68,6 +68,8 @@ struct EyeParts {
   };
   Hull hull = {};
   const CeilingGrid* ceiling = nullptr;  ///< of the world, where it has one
+  /// Of the pair's left camera, where this is the right one's; outlives the eye.
+  const Eye* partner = nullptr;
 };
 
 struct EyeEntry : NameEntry {

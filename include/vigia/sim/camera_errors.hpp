@@ -17,6 +17,10 @@ class CameraErrors {
   CameraErrors() = default;
   CameraErrors(const DisturbanceParams& disturbances, std::uint64_t seed, CameraId camera = 0);
 
+  /// Errors of a stereo pair, drawn once for both of its cameras; @p side is +1 of the left one, −1
+  /// of the right.
+  void draw_pair(const StereoParams& pair, std::uint64_t seed, double side);
+
   /// The camera's true intrinsics, where the table says @p calibrated at a zoom position that is
   /// the fraction @p u of the way from the wide to the long end.
   Intrinsics true_intrinsics(const Intrinsics& calibrated, double u) const;
@@ -39,6 +43,10 @@ class CameraErrors {
   double mirror_scale_ = 0.0;                                ///< relative
   Eigen::Vector2d mirror_centre_ = Eigen::Vector2d::Zero();  ///< px
   Eigen::Vector2d mirror_tilt_ = Eigen::Vector2d::Zero();    ///< rad about x and y of frame c
+  bool paired_ = false;
+  double pair_baseline_ = 0.0;  ///< relative
+  double pair_turn_ = 0.0;      ///< about the base's z axis, rad
+  double pair_focal_ = 0.0;     ///< relative
   bool askew_ = false;
   Eigen::Vector3d turn_ = Eigen::Vector3d::Zero();    ///< yaw, pitch, roll
   Eigen::Vector3d offset_ = Eigen::Vector3d::Zero();  ///< m

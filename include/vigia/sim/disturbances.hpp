@@ -56,6 +56,13 @@ struct MirrorParams {
   double centre_px = 0.2;        ///< σ of either coordinate of its middle
 };
 
+/// A stereo pair is not quite what it was calibrated as.
+struct StereoParams {
+  double baseline = 0.01;           ///< σ of the relative error of its baseline
+  double vergence = from_deg(0.1);  ///< σ of how far its cameras are turned towards each other, rad
+  double focal = 0.005;             ///< σ of the relative error of both focal lengths
+};
+
 /// Pan and tilt encoders follow the axes with play.
 struct BacklashParams {
   double width = from_deg(0.1);  ///< rad
@@ -120,6 +127,7 @@ struct DisturbanceParams {
   std::optional<ZoomCalibrationParams> zoom_calibration;
   std::optional<PrincipalPointParams> principal_point;
   std::optional<MirrorParams> mirror;
+  std::optional<StereoParams> stereo;
   std::optional<BacklashParams> backlash;
   std::optional<WheelSlipParams> wheel_slip;
   std::optional<MapErrorParams> map_error;

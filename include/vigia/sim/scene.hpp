@@ -21,6 +21,9 @@ struct ImagingParams {
   double noise_sigma = 4.0;  ///< grey levels, Gaussian, independent per pixel and frame
   double blur_px = 0.7;      ///< σ of the optical blur at the landmarks' outlines
   bool colour = false;       ///< whether frames carry colour (grey frames are cheaper)
+  /// Of which the light of a pixel's square is the mean, and blur_px then blurs every outline. 1:
+  /// outlines of surfaces and solids are sharp and a pixel shows what lies in its middle.
+  int samples = 1;
 };
 
 // Looks of the building: texture of walls, floor and ceiling, light, dark round clutter.
