@@ -385,7 +385,9 @@ INSTANTIATE_TEST_SUITE_P(
         WrongMission{"GazeThatSwings", "gaze.aim_gain=30", "it may be 25 at most"},
         WrongMission{
             "DoorTooNarrow",
-            "world.walls=[{from_m: [8, 0], to_m: [8, 3]}, {from_m: [8, 3.58], to_m: [8, 7]}]",
+            "world.walls=[{from_m: [3.4, 2.2], to_m: [3.4, 4.4]}, "
+            "{from_m: [3.4, 4.2], to_m: [6.1, 4.2]}, {from_m: [6.5, 0], to_m: [6.5, 1.1]}, "
+            "{from_m: [6.5, 1.68], to_m: [6.5, 7]}]",
             "too narrow for the robot"},
         WrongMission{"StartInTheWall", "start.position_m=[0.05, 1.0]", "does not fit"},
         WrongMission{"StartOutside", "start.position_m=[-3, 1]", "does not fit"},
