@@ -105,6 +105,9 @@ void describe_ceiling_looks(ParamVisitor& v, Appearance& a) {
   v.number("lamp_pitch_m", a.lamp_pitch_m, {0.0, 100.0},
            "between lamps of 1.2 by 0.2 m on the ceiling; 0: none");
   v.number("lamp_grey", a.lamp_grey, kGrey, "of those lamps");
+  v.number("pipe_pitch_m", a.pipe_pitch_m, {0.0, 100.0},
+           "between pipes of 0.1 m along x that hang below the ceiling; 0: none");
+  v.number("pipe_drop_m", a.pipe_drop_m, {0.0, 5.0}, "of their lower side below the ceiling");
 }
 
 void describe_stripe(ParamVisitor& v, Stripe& stripe) {

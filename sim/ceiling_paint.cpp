@@ -11,6 +11,12 @@ namespace {
 constexpr double kFarthest_m = 10.0;
 constexpr double kLampLength_m = 1.2;
 constexpr double kLampWidth_m = 0.2;
+constexpr double kPipePiece_m = 2.0;
+constexpr double kSeam_m = 0.02;  // by which pieces overlap
+constexpr double kCollar_m = 0.06;
+constexpr double kPipeSideGrey = 95.0;
+constexpr double kPipeGrey = 150.0;
+constexpr double kPipeShineGrey = 215.0;
 
 /// Of the ceiling.
 struct Rectangle {
@@ -63,12 +69,26 @@ class MarkList {
   void add_lamp(const Eigen::Vector2d& p) {
     add({p.x(), p.y(), 0.0}, 0.0, kLampLength_m, kLampWidth_m, truth_.lamp_grey);
   }
+  /// A piece of a pipe about @p p: round, so that it shines below and is dark at its sides; every
+  /// piece has a collar.
+  void add_pipe(const Eigen::Vector2d& p, double length_m) {
+    const double z = height_m_ - truth_.pipe_drop_m;
+    const double width = truth_.pipe_width_m;
+    add({p.x(), p.y(), 0.0}, 0.0, length_m, width, kPipeSideGrey, z);
+    add({p.x(), p.y(), 0.0}, 0.0, length_m, 0.7 * width, kPipeGrey, z);
+    add({p.x(), p.y() + 0.1 * width, 0.0}, 0.0, length_m, 0.2 * width, kPipeShineGrey, z);
+    add({p.x(), p.y(), 0.0}, 0.0, kCollar_m, 1.3 * width, kPipeSideGrey, z);
+  }
   std::vector<StripeMark> take() { return std::move(marks_); }
 
  private:
   void add(const Pose2& pose, double forward_m, double length_m, double width_m, double grey) {
+    add(pose, forward_m, length_m, width_m, grey, height_m_);
+  }
+  void add(const Pose2& pose, double forward_m, double length_m, double width_m, double grey,
+           double height_m) {
     StripeMark& mark = marks_.emplace_back();
-    mark.wMd = hung(pose, height_m_, forward_m);
+    mark.wMd = hung(pose, height_m, forward_m);
     mark.half_length_m = 0.5 * length_m;
     mark.half_width_m = 0.5 * width_m;
     mark.grey = static_cast<float>(grey);
@@ -102,6 +122,20 @@ void add_lamps(const CeilingTruth& truth, const Rectangle& part, MarkList& list)
           {aside + pitch * static_cast<double>(i), aside + pitch * static_cast<double>(j)});
 }
 
+/// Whoever is near a pipe sees less of it than of the ceiling: the same part holds.
+void add_pipes(const CeilingTruth& truth, const Rectangle& part, MarkList& list) {
+  const double pitch = truth.pipe_pitch_m;
+  if (pitch <= 0.0) return;
+  const double aside = 0.3 * truth.grid.pitch_m;
+  const auto [i0, i1] =
+      nodes(part.min.x() - kPipePiece_m, part.max.x() + kPipePiece_m, kPipePiece_m, 0.0);
+  const auto [j0, j1] = nodes(part.min.y() - pitch, part.max.y() + pitch, pitch, aside);
+  for (std::int64_t j = j0; j <= j1; ++j)
+    for (std::int64_t i = i0; i <= i1; ++i)
+      list.add_pipe({kPipePiece_m * static_cast<double>(i), aside + pitch * static_cast<double>(j)},
+                    kPipePiece_m + kSeam_m);
+}
+
 }  // namespace
 
 std::vector<StripeMark> ceiling_marks(const CeilingTruth& truth, double height_m,
@@ -121,6 +155,7 @@ std::vector<StripeMark> ceiling_marks(const CeilingTruth& truth, double height_m
       if (const auto patch = spurious_patch(truth, {i, j})) list.add_patch(*patch);
     }
   }
+  add_pipes(truth, part, list);
   return list.take();
 }
 

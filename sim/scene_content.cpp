@@ -152,6 +152,8 @@ void SceneContent::hang(const CeilingGrid& grid, const FloorPlan& plan, const Ap
   truth.patch_grey = look.patch_grey;
   truth.lamp_pitch_m = look.lamp_pitch_m;
   truth.lamp_grey = look.lamp_grey;
+  truth.pipe_pitch_m = look.pipe_pitch_m;
+  truth.pipe_drop_m = look.pipe_drop_m;
   ceiling = {truth, plan.ceiling_m(), plan.faces().size() + 1};
 }
 

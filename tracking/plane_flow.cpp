@@ -23,6 +23,12 @@ constexpr int kFlowMargin_px = 4;
 constexpr int kFlowSteps = 12;
 constexpr int kCoarse = 4;          // pixels: σ and step of the search
 constexpr int kSearchPoints = 300;  // that it goes by
+constexpr int kSmall = 4;           // a picture is so many times smaller for the widest search
+constexpr int kFarTurns = 3;        // to either side
+constexpr double kFarTurn = from_deg(4.0);
+constexpr double kAlike = 0.95;  // correlation of pictures that nobody need doubt
+constexpr double kSaturated = 250.0;
+constexpr double kMaxGain = 2.0;  // of the light from one picture to the other, either way
 
 /// Grey and slope between pixels, linear.
 struct GreySample {
@@ -46,6 +52,31 @@ GreySample sample(const cv::Mat& image, double u, double v) {
   return {top + fv * (bottom - top), (1.0 - fv) * (b - a) + fv * (d - c), bottom - top};
 }
 
+/// Of pairs of greys.
+class GreyMoments {
+ public:
+  void add(double a, double b) {
+    n_ += 1.0;
+    a_ += a;
+    b_ += b;
+    aa_ += a * a;
+    bb_ += b * b;
+    ab_ += a * b;
+  }
+  double correlation() const {
+    const double spread = (n_ * aa_ - a_ * a_) * (n_ * bb_ - b_ * b_);
+    return spread > 0.0 ? (n_ * ab_ - a_ * b_) / std::sqrt(spread) : 0.0;
+  }
+
+ private:
+  double n_ = 0.0;
+  double a_ = 0.0;
+  double b_ = 0.0;
+  double aa_ = 0.0;
+  double bb_ = 0.0;
+  double ab_ = 0.0;
+};
+
 }  // namespace
 
 class PlaneFlow::State {
@@ -65,8 +96,7 @@ class PlaneFlow::State {
       result.status = points_.empty() ? FlowStatus::failed : FlowStatus::key;
       return result;
     }
-    Match match = align(smooth, predicted(), &KeyPoint::grey);
-    if (!agrees(match)) match = align(smooth, found_again(grey), &KeyPoint::grey);
+    const Match match = best_match(grey, smooth);
     if (!agrees(match)) {
       make_key(grey, smooth);
       result.status = FlowStatus::failed;
@@ -106,6 +136,7 @@ class PlaneFlow::State {
     FlowState state;
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
     double agreement = 0.0;
+    double correlation = 0.0;  ///< of the greys of the two pictures
     double overlap = 0.0;
     bool converged = false;
   };
@@ -121,8 +152,24 @@ class PlaneFlow::State {
     return {c * p.x() - s * p.y(), s * p.x() + c * p.y()};
   }
 
+  /// From the prediction; where the pictures are not plainly alike there, of the searches too the
+  /// one after which they are most alike.
+  Match best_match(const cv::Mat& grey, const cv::Mat& smooth) const {
+    Match best = align(smooth, predicted(), &KeyPoint::grey);
+    for (const auto search : {&State::found_again, &State::found_far}) {
+      if (agrees(best) && best.correlation >= kAlike) return best;
+      const Match other = align(smooth, (this->*search)(grey), &KeyPoint::grey);
+      if (!agrees(best) || (agrees(other) && other.correlation > best.correlation)) best = other;
+    }
+    return best;
+  }
+
+  /// That most points fit by the residuals' own scale says nothing where the light's gain has gone
+  /// to zero: the pictures must be alike.
   bool agrees(const Match& match) const {
-    return match.converged && match.agreement >= params_.min_agreement;
+    return match.converged && match.agreement >= params_.min_agreement &&
+           match.correlation >= params_.min_correlation && match.state.gain < kMaxGain &&
+           match.state.gain > 1.0 / kMaxGain;
   }
 
   FlowState predicted() const {
@@ -141,6 +188,7 @@ class PlaneFlow::State {
   void make_key(const cv::Mat& grey, const cv::Mat& smooth) {
     points_.clear();
     const cv::Mat coarse = blurred(grey);
+    key_small_ = small(grey);
     last_ = {};
     const int block = params_.block_px;
     for (int v0 = kFlowMargin_px; v0 + block <= smooth.rows - kFlowMargin_px; v0 += block)
@@ -166,6 +214,7 @@ class PlaneFlow::State {
       }
     }
     if (0.5 * best < params_.min_slope) return;
+    if (smooth.ptr<unsigned char>(best_v)[best_u] >= kSaturated) return;
     const auto seen = ray(model_, Eigen::Vector2d(best_u, best_v));
     if (!seen) return;
     const Eigen::Vector3d r = level_ * *seen;
@@ -185,6 +234,7 @@ class PlaneFlow::State {
       match.overlap = static_cast<double>(sums.seen) / static_cast<double>(points_.size());
       if (sums.seen < params_.min_points / 2) return match;
       match.agreement = static_cast<double>(sums.fitting) / sums.seen;
+      match.correlation = sums.correlation;
       scale = std::clamp(sums.scale, 1.5, 40.0);
       const Eigen::LDLT<FlowNormal> solver(sums.normal);
       const FlowVector step = solver.solve(sums.gradient);
@@ -207,6 +257,7 @@ class PlaneFlow::State {
     double square = 0.0;
     double weight = 0.0;
     double scale = 0.0;  ///< robust σ of the residuals
+    double correlation = 0.0;
     int seen = 0;
     int fitting = 0;
   };
@@ -218,6 +269,7 @@ class PlaneFlow::State {
     const Eigen::Matrix3d unlevel = level_.transpose();
     std::vector<double> residuals;
     residuals.reserve(points_.size());
+    GreyMoments greys;
     for (const KeyPoint& point : points_) {
       const Eigen::Vector2d d = point.m - state.shift;
       const Eigen::Vector2d m(c * d.x() + s * d.y(), c * d.y() - s * d.x());
@@ -226,8 +278,10 @@ class PlaneFlow::State {
       if (!uv || !in_image(model_, *uv, kFlowMargin_px)) continue;
       const auto duv_dp = project_jacobian(model_, p);
       if (!duv_dp) continue;
-      ++sums.seen;
       const GreySample grey = sample(now, uv->x(), uv->y());
+      if (grey.grey >= kSaturated) continue;
+      ++sums.seen;
+      greys.add(point.*level, grey.grey);
       const double residual = state.gain * point.*level + state.offset - grey.grey;
       residuals.push_back(std::abs(residual));
       if (std::abs(residual) < 3.0 * scale) ++sums.fitting;
@@ -247,6 +301,7 @@ class PlaneFlow::State {
       sums.weight += weight;
     }
     if (!residuals.empty()) sums.scale = 1.4826 * median_of(residuals);
+    sums.correlation = greys.correlation();
     return sums;
   }
 
@@ -257,6 +312,51 @@ class PlaneFlow::State {
     return align(coarse, search(coarse), &KeyPoint::coarse).state;
   }
 
+  static cv::Mat small(const cv::Mat& grey) {
+    cv::Mat reduced;
+    cv::resize(grey, reduced, {}, 1.0 / kSmall, 1.0 / kSmall, cv::INTER_AREA);
+    reduced.convertTo(reduced, CV_32F);
+    return reduced;
+  }
+
+  /// Further away, where the pictures overlap at all: of the picture turned back by several angles
+  /// the highest peak of the phase correlation.
+  FlowState found_far(const cv::Mat& grey) const {
+    const cv::Mat now = small(grey);
+    cv::Mat window;
+    cv::createHanningWindow(window, now.size(), CV_32F);
+    FlowState best;
+    double highest = 0.0;
+    for (int k = -kFarTurns; k <= kFarTurns; ++k) {
+      FlowState state;
+      state.turn = k * kFarTurn;
+      const cv::Mat back = turned_back(now, state.turn);
+      double peak = 0.0;
+      const cv::Point2d moved = cv::phaseCorrelate(key_small_, back, window, &peak);
+      if (peak <= highest) continue;
+      highest = peak;
+      state.shift =
+          (level_ * Eigen::Vector3d(-moved.x, -moved.y, 0.0)).head<2>() * kSmall / focal();
+      best = state;
+    }
+    return align(blurred(grey), best, &KeyPoint::coarse).state;
+  }
+
+  /// A small picture as the camera would have seen it without the turn.
+  cv::Mat turned_back(const cv::Mat& picture, double turn) const {
+    if (turn == 0.0) return picture;
+    const auto axis = project(model_, Eigen::Vector3d(level_.transpose().col(2)));
+    const Eigen::Vector2d middle =
+        axis.value_or(Eigen::Vector2d(0.5 * kSmall * picture.cols, 0.5 * kSmall * picture.rows)) /
+        kSmall;
+    cv::Mat turned;
+    // OpenCV's angle is against the picture's v; what is seen turns against the camera.
+    const cv::Mat map = cv::getRotationMatrix2D(
+        {static_cast<float>(middle.x()), static_cast<float>(middle.y())}, -to_deg(turn), 1.0);
+    cv::warpAffine(picture, turned, map, picture.size(), cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+    return turned;
+  }
+
   /// The shift, about the last frame's, under which the pictures differ least, in steps of kCoarse
   /// pixels and of turns that move the image's border by as much.
   FlowState search(const cv::Mat& now) const {
@@ -264,11 +364,15 @@ class PlaneFlow::State {
     const double turn_step = 2.0 * kCoarse / now.cols;
     const int reach = static_cast<int>(std::ceil(params_.max_search_px / kCoarse));
     FlowState best = last_;
+    best.gain = 1.0;
+    best.offset = 0.0;
     double least = 1e30;
     for (int k = -3; k <= 3; ++k) {
       for (int j = -reach; j <= reach; ++j) {
         for (int i = -reach; i <= reach; ++i) {
           FlowState state = last_;
+          state.gain = 1.0;
+          state.offset = 0.0;
           state.shift += rotated(Eigen::Vector2d(i * step, j * step), last_.turn);
           state.turn += k * turn_step;
           const double off = difference(now, state);
@@ -311,6 +415,7 @@ class PlaneFlow::State {
   std::vector<KeyPoint> points_;
   FlowState last_;
   Step step_;
+  cv::Mat key_small_;
 };
 
 PlaneFlow::PlaneFlow(const CameraModel& model, const Eigen::Matrix3d& level,
@@ -321,6 +426,38 @@ PlaneFlow::PlaneFlow(PlaneFlow&&) noexcept = default;
 
 PlaneFlowResult PlaneFlow::next(const vpImage<unsigned char>& image) {
   return state_->next(image);
+}
+
+namespace {
+
+/// Motion from one of two frames to the other, both compared with one key frame.
+ImageShift between(const ImageShift& before, const ImageShift& now) {
+  ImageShift step;
+  step.shift = Eigen::Rotation2Dd(-before.turn) * (now.shift - before.shift);
+  step.turn = wrap_angle(now.turn - before.turn);
+  step.covariance = before.covariance + now.covariance;
+  return step;
+}
+
+ImageShift at_rest() {
+  ImageShift none;
+  none.covariance.setZero();
+  return none;
+}
+
+}  // namespace
+
+FrameFlow::FrameFlow(const CameraModel& model, const Eigen::Matrix3d& level,
+                     const PlaneFlowParams& params)
+    : flow_(model, level, params), since_key_(at_rest()) {}
+
+std::optional<ImageShift> FrameFlow::next(const vpImage<unsigned char>& image) {
+  const PlaneFlowResult result = flow_.next(image);
+  agreement_ = result.agreement;
+  std::optional<ImageShift> step;
+  if (result.status == FlowStatus::matched) step = between(since_key_, result.since_key);
+  since_key_ = result.new_key ? at_rest() : result.since_key;
+  return step;
 }
 
 }  // namespace vigia::tracking

@@ -39,6 +39,9 @@ const std::vector<TrackerEntry>& trackers() {
       {{"field_scan", "lines, goals and posts of a field in a mirror camera's pictures", "colour"},
        nullptr,
        nullptr},
+      {{"ceiling", "patches of a ceiling in the pictures of a camera that looks up", "patches"},
+       nullptr,
+       nullptr},
   };
   return table;
 }

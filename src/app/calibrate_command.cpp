@@ -358,6 +358,7 @@ void add_calibrate(CLI::App& app, int& status) {
   auto options = std::make_shared<CalibrateOptions>();
   CLI::App* command = app.add_subcommand("calibrate", "Calibrate a camera on the robot");
   command->require_subcommand(1);
+  add_calibrate_ceiling(*command, status);
   CLI::App* omni = command->add_subcommand(
       "omni", "A mirror's focal length, middle and tilt by a field's lines or a target of rings");
   omni->add_option("inputs", options->inputs, "Pictures, folders, NAME%04d.png")->required();

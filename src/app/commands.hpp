@@ -12,6 +12,8 @@ void add_check(CLI::App& app, int& status);
 void add_track(CLI::App& app, int& status);
 void add_landmark(CLI::App& app, int& status);
 void add_calibrate(CLI::App& app, int& status);
+/// The one for a camera that looks up, below `calibrate`.
+void add_calibrate_ceiling(CLI::App& calibrate, int& status);
 void add_campaign(CLI::App& app, int& status);
 void add_evaluate(CLI::App& app, int& status);
 void add_reproduce(CLI::App& app, int& status);

@@ -17,6 +17,8 @@ struct LandmarkOptions {
   PatternShape pattern;
   TagShape tag;
   DiscShape disc;
+  report::PatchShape patch;
+  bool plain = false;
   std::string out;
   std::string paper;
   double dpi = 300.0;
@@ -97,6 +99,21 @@ void add_tag(CLI::App& command, const std::shared_ptr<LandmarkOptions>& options,
   });
 }
 
+void add_ceiling(CLI::App& command, const std::shared_ptr<LandmarkOptions>& options, int& status) {
+  CLI::App* kind = add_kind(command, "ceiling", "A patch of a ceiling", options);
+  kind->add_option("--length-m", options->patch.length_m, "Length, tongue and all, m")
+      ->capture_default_str();
+  kind->add_option("--width-m", options->patch.width_m, "Width, m")->capture_default_str();
+  kind->add_flag("--plain", options->plain, "Without the tongue that tells its ends apart");
+  kind->callback([options, &status] {
+    report::PatchShape& patch = options->patch;
+    check_metres("--length-m", patch.length_m, 0.02, 1.0);
+    check_metres("--width-m", patch.width_m, 0.01, 0.5 * patch.length_m);
+    patch.polarity = !options->plain;
+    status = print(patch, *options);
+  });
+}
+
 }  // namespace
 
 void add_landmark(CLI::App& app, int& status) {
@@ -107,6 +124,7 @@ void add_landmark(CLI::App& app, int& status) {
   add_disc(*command, options, status);
   add_pattern(*command, options, status);
   add_tag(*command, options, status);
+  add_ceiling(*command, options, status);
 }
 
 }  // namespace vigia::app

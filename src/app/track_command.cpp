@@ -1,3 +1,4 @@
+#include "ceiling_options.hpp"
 #include "commands.hpp"
 #include "interrupt.hpp"
 #include "mirror_option.hpp"
@@ -11,6 +12,8 @@
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -39,6 +42,8 @@ struct TrackOptions {
   int remember = 50;
   std::string mirror;
   double ray_step_deg = 3.0;
+  std::string patch_px;
+  CeilingOptions ceiling;
   std::string camera;
   std::string landmarks;
   double size_m = 0.0;
@@ -67,21 +72,6 @@ struct RadiusRange {
   double min_px = 3.0;
   double max_px = std::numeric_limits<double>::infinity();
 };
-
-RadiusRange parse_radius(const std::string& text) {
-  if (text.empty()) return {};
-  const std::size_t colon = text.find(':');
-  const auto low = parsed<double>(std::string_view(text).substr(0, colon));
-  const auto high = colon == std::string::npos
-                        ? std::nullopt
-                        : parsed<double>(std::string_view(text).substr(colon + 1));
-  if (!low || !high || !(*low >= 3.0) || !(*high >= *low) || !(*high <= 1e5))
-    throw InputError(
-        fmt::format("--radius-px: found '{}', must be MIN:MAX, in pixels, with "
-                    "3 ≤ MIN ≤ MAX ≤ 100000",
-                    text));
-  return {*low, *high};
-}
 
 tracking::Polarity parse_polarity(const std::string& text) {
   if (text == "dark") return tracking::Polarity::dark;
@@ -139,10 +129,57 @@ tracking::FieldPictureParams make_field_scan(const TrackOptions& options) {
   return params;
 }
 
-TrackRun::Tracker make_tracker(const TrackOptions& options) {
-  if (scans_field(options)) return make_field_scan(options);
-  if (!options.mirror.empty() || options.output.panorama)
+RadiusRange parse_radius(const std::string& text) {
+  if (text.empty()) return {};
+  const auto range = parsed_pair(text);
+  if (!range || !(range->first >= 3.0) || !(range->second >= range->first) ||
+      !(range->second <= 1e5))
+    throw InputError(
+        fmt::format("--radius-px: found '{}', must be MIN:MAX, in pixels, with "
+                    "3 ≤ MIN ≤ MAX ≤ 100000",
+                    text));
+  return {range->first, range->second};
+}
+
+bool follows_ceiling(const TrackOptions& options) {
+  return options.tracker == "ceiling";
+}
+
+CeilingTrack make_ceiling(const TrackOptions& options) {
+  if (!options.ids.empty() || !options.radius_px.empty() || options.size_m > 0.0 ||
+      !options.landmarks.empty())
+    throw InputError(
+        "--tracker ceiling: patches have no --ids, --radius-px, --size or --landmarks");
+  if (!options.camera.empty()) {
+    if (!options.patch_px.empty())
+      throw InputError("--patch-px: with --camera the size in pixels follows from --patch-m");
+    return CeilingTrack(ceiling_view(options.ceiling, options.camera), options.ceiling.rate_hz);
+  }
+  if (options.ceiling.rise_m > 0.0 || !options.ceiling.patch_m.empty())
+    throw InputError("--rise-m and --patch-m give poses only with --camera FILE");
+  if (options.patch_px.empty())
+    throw InputError(
+        "--tracker ceiling: how large are the patches in the pictures? Give --patch-px "
+        "LENGTH:WIDTH, or --camera FILE and --rise-m H");
+  tracking::PatchFinderParams params;
+  std::tie(params.length_px, params.width_px) =
+      parse_patch("--patch-px", options.patch_px, 3.0, 1000.0);
+  params.polarity = !options.ceiling.plain;
+  return CeilingTrack(params);
+}
+
+void refuse_other_trackers_options(const TrackOptions& options) {
+  if (!scans_field(options) && (!options.mirror.empty() || options.output.panorama))
     throw InputError("--mirror and --panorama: are for --tracker field_scan");
+  if (!follows_ceiling(options) && (!options.patch_px.empty() || options.ceiling.given()))
+    throw InputError(
+        "--patch-px, --patch-m, --rise-m, --placement and --plain: are for --tracker ceiling");
+}
+
+TrackRun::Tracker make_tracker(const TrackOptions& options) {
+  refuse_other_trackers_options(options);
+  if (follows_ceiling(options)) return make_ceiling(options);
+  if (scans_field(options)) return make_field_scan(options);
   const std::vector<tracking::LandmarkCode> codes = parse_codes(options);
   const RadiusRange radius = parse_radius(options.radius_px);
   if (tracks_points(options)) {
@@ -175,6 +212,7 @@ LandmarkMap read_landmarks(const std::string& file) {
 }
 
 std::optional<LandmarkPoses> make_poses(const TrackOptions& options) {
+  if (follows_ceiling(options)) return std::nullopt;
   const bool sized = options.size_m > 0.0 || !options.landmarks.empty();
   if (options.camera.empty()) {
     if (sized) throw InputError("--size and --landmarks give poses only with --camera FILE");
@@ -309,6 +347,9 @@ void add_track(CLI::App& app, int& status) {
       app.add_subcommand("track", "Run a tracker on pictures, a video or a live camera");
   add_what(*command, *options);
   add_field(*command, *options);
+  command->add_option("--patch-px", options->patch_px,
+                      "ceiling: LENGTH:WIDTH of a patch in the pictures, px");
+  add_ceiling_options(*command, options->ceiling);
   add_pose(*command, *options);
   add_output(*command, *options);
   command->callback([options, &status] { status = track(*options); });

@@ -10,6 +10,7 @@
 #include "vigia/core/error.hpp"
 #include "vigia/core/overloaded.hpp"
 #include "vigia/imaging/image_frame.hpp"
+#include "vigia/tracking/ceiling_picture.hpp"
 #include "vigia/tracking/panorama.hpp"
 
 namespace vigia::app {
@@ -28,6 +29,9 @@ std::string header_of(const tracking::PointPictureRun& /*run*/) {
 }
 std::string header_of(const tracking::FieldPictureParams& /*run*/) {
   return tracking::field_csv_header();
+}
+std::string header_of(const CeilingTrack& /*run*/) {
+  return tracking::ceiling_csv_header();
 }
 
 std::string feature_lines(const tracking::PictureRow& row, const std::string& start) {
@@ -75,7 +79,22 @@ TrackRun::~TrackRun() = default;
 const char* TrackRun::things() const {
   if (std::holds_alternative<tracking::FieldPictureParams>(tracker_))
     return "points on lines, goals and posts";
+  if (std::holds_alternative<CeilingTrack>(tracker_)) return "patches";
   return std::holds_alternative<tracking::PictureRun>(tracker_) ? "discs" : "landmarks";
+}
+
+/// Those of the table of poses beside the target's; empty without poses.
+std::string TrackRun::pose_columns() const {
+  if (poses_) return "code," + pose_csv_header();
+  const auto* ceiling = std::get_if<CeilingTrack>(&tracker_);
+  return ceiling != nullptr && ceiling->gives_poses() ? CeilingTrack::pose_header() : "";
+}
+
+/// The one that gives poses.
+const Intrinsics* TrackRun::camera() const {
+  if (poses_) return &poses_->camera();
+  const auto* ceiling = std::get_if<CeilingTrack>(&tracker_);
+  return ceiling != nullptr && ceiling->gives_poses() ? &ceiling->view()->camera : nullptr;
 }
 
 // The heads of the tables.
@@ -83,8 +102,9 @@ void TrackRun::begin() {
   const std::string features =
       "image,frame,time_s,target," +
       std::visit([](const auto& run) { return header_of(run); }, tracker_) + '\n';
-  const std::string poses = "image,frame,time_s,target,code," + pose_csv_header() + '\n';
-  fmt::print("{}", poses_ ? poses : features);
+  const std::string columns = pose_columns();
+  const std::string poses = "image,frame,time_s,target," + columns + '\n';
+  fmt::print("{}", columns.empty() ? features : poses);
   if (!folder_) return;
   folder_->add(kFeatures, "");
   if (output_.overlays) folder_->make("overlay");
@@ -92,7 +112,7 @@ void TrackRun::begin() {
   folder_->commit();
   features_file_.emplace(fs::path(output_.folder) / kFeatures);
   features_file_->write(features);
-  if (!poses_) return;
+  if (columns.empty()) return;
   poses_file_.emplace(fs::path(output_.folder) / kPoses);
   poses_file_->write(poses);
 }
@@ -125,11 +145,12 @@ TrackRun::Tables TrackRun::tables_of(const std::vector<Row>& rows,
 }
 
 TrackRun::Tables TrackRun::track(const imaging::Picture& picture, vpImage<vpRGBa>* overlay) {
-  return std::visit(Overloaded{[&](tracking::FieldPictureParams& params) {
-                                 return scanned(params, picture, overlay);
-                               },
-                               [&](auto& run) { return followed(run, picture, overlay); }},
-                    tracker_);
+  return std::visit(
+      Overloaded{
+          [&](tracking::FieldPictureParams& params) { return scanned(params, picture, overlay); },
+          [&](CeilingTrack& ceiling) { return patches(ceiling, picture, overlay); },
+          [&](auto& run) { return followed(run, picture, overlay); }},
+      tracker_);
 }
 
 template <typename Run>
@@ -151,13 +172,23 @@ TrackRun::Tables TrackRun::scanned(const tracking::FieldPictureParams& params,
           tracking::features_in(found)};
 }
 
+TrackRun::Tables TrackRun::patches(CeilingTrack& ceiling, const imaging::Picture& picture,
+                                   vpImage<vpRGBa>* overlay) const {
+  const CeilingTrack::Row row = ceiling.next(picture, pictures_);
+  if (overlay != nullptr) tracking::draw_overlay(row.scan, *overlay);
+  const std::string start = place_of(picture) + ',';
+  return {tracking::ceiling_csv_lines(row.scan, start),
+          ceiling.gives_poses() ? start + row.pose + '\n' : "",
+          static_cast<int>(row.scan.patches.size())};
+}
+
 void TrackRun::picture(const imaging::Picture& picture) {
   const imaging::Frame& frame = *picture.frame;
-  if (poses_ &&
-      (frame.width() != poses_->camera().width || frame.height() != poses_->camera().height))
+  if (const Intrinsics* own = camera();
+      own != nullptr && (frame.width() != own->width || frame.height() != own->height))
     throw InputError(fmt::format("{}: {}×{} pixels, but --camera is calibrated for {}×{}",
-                                 picture.name, frame.width(), frame.height(),
-                                 poses_->camera().width, poses_->camera().height));
+                                 picture.name, frame.width(), frame.height(), own->width,
+                                 own->height));
   const bool drawn = (folder_ && output_.overlays) || window_;
   ++pictures_;
   auto overlay = drawn ? imaging::colour_image(frame) : vpImage<vpRGBa>();
@@ -173,7 +204,7 @@ void TrackRun::picture(const imaging::Picture& picture) {
 }
 
 void TrackRun::write(const Tables& tables) {
-  fmt::print("{}", poses_ ? tables.poses : tables.features);
+  fmt::print("{}", pose_columns().empty() ? tables.features : tables.poses);
   if (std::fflush(stdout) != 0) throw InputError("stdout: the table cannot be written");
   if (features_file_) {
     features_file_->write(tables.features);

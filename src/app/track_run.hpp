@@ -1,5 +1,6 @@
 #pragma once
 
+#include "ceiling_track.hpp"
 #include "landmark_poses.hpp"
 #include "overlay_window.hpp"
 
@@ -30,8 +31,8 @@ struct TrackOutput {
 /// whatever happens afterwards. The folder takes its name when the first picture has been tracked.
 class TrackRun {
  public:
-  using Tracker =
-      std::variant<tracking::PictureRun, tracking::PointPictureRun, tracking::FieldPictureParams>;
+  using Tracker = std::variant<tracking::PictureRun, tracking::PointPictureRun,
+                               tracking::FieldPictureParams, CeilingTrack>;
 
   TrackRun(Tracker tracker, std::optional<LandmarkPoses> poses, const TrackOutput& output);
   ~TrackRun();
@@ -58,6 +59,10 @@ class TrackRun {
   Tables followed(Run& run, const imaging::Picture& picture, vpImage<vpRGBa>* overlay) const;
   Tables scanned(const tracking::FieldPictureParams& params, const imaging::Picture& picture,
                  vpImage<vpRGBa>* overlay);
+  Tables patches(CeilingTrack& ceiling, const imaging::Picture& picture,
+                 vpImage<vpRGBa>* overlay) const;
+  std::string pose_columns() const;
+  const Intrinsics* camera() const;
   std::string place_of(const imaging::Picture& picture) const;
   std::filesystem::path picture_file(const char* kind, const imaging::Picture& picture) const;
   template <typename Row>

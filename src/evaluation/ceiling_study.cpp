@@ -149,8 +149,7 @@ std::vector<CeilingEstimate> fix_jointly(const CeilingSetting& setting,
     filter.update(frame.scan.patches);
     CeilingEstimate estimate = estimate_of(frame, filter.belief());
     filter.reset({}, about(frame.truth));
-    filter.relinearise(frame.truth, setting.true_errors(), {});
-    filter.update(frame.scan.patches);
+    filter.inform({frame.truth, setting.true_errors(), {}}, frame.scan.patches);
     estimate.bound = filter.belief().covariance;
     estimates.push_back(estimate);
   }
@@ -180,11 +179,9 @@ std::vector<CeilingEstimate> follow_jointly(const CeilingSetting& setting,
       predict_motion(filter, setting, frame, motion, now);
       predict_motion(bound, setting, frame, motion, now);
     }
-    const auto placement = placement_about(setting, frame.truth);
-    bound.relinearise(frame.truth, setting.true_errors(), placement);
     filter.update(frame.scan.patches);
-    bound.update(frame.scan.patches);
-    bound.relinearise(frame.truth, setting.true_errors(), placement);
+    bound.inform({frame.truth, setting.true_errors(), placement_about(setting, frame.truth)},
+                 frame.scan.patches);
     estimates.push_back(estimate_of(frame, filter.belief()));
     estimates.back().bound = bound.belief().covariance;
   }

@@ -32,42 +32,6 @@ sim::Appearance look_of(const CeilingSetting& setting) {
   return look;
 }
 
-/// Motion from one of two frames to the other, both compared with one key frame.
-ImageShift between(const ImageShift& before, const ImageShift& now) {
-  ImageShift step;
-  step.shift = Eigen::Rotation2Dd(-before.turn) * (now.shift - before.shift);
-  step.turn = wrap_angle(now.turn - before.turn);
-  step.covariance = before.covariance + now.covariance;
-  return step;
-}
-
-/// Turns matches with key frames into motions from frame to frame.
-class FlowChain {
- public:
-  explicit FlowChain(const localization::CeilingCamera& camera)
-      : flow_(camera.model, camera.rMc.linear()) {
-    since_key_.covariance.setZero();
-  }
-
-  std::optional<ImageShift> next(const vpImage<unsigned char>& image, double& agreement) {
-    const tracking::PlaneFlowResult result = flow_.next(image);
-    agreement = result.agreement;
-    std::optional<ImageShift> step;
-    if (result.status == tracking::FlowStatus::matched)
-      step = between(since_key_, result.since_key);
-    since_key_ = result.since_key;
-    if (result.new_key) {
-      since_key_ = {};
-      since_key_.covariance.setZero();
-    }
-    return step;
-  }
-
- private:
-  tracking::PlaneFlow flow_;
-  ImageShift since_key_;
-};
-
 }  // namespace
 
 CeilingSetting::CeilingSetting() {
@@ -109,7 +73,8 @@ std::vector<CeilingFrame> read_ceiling_drive(const CeilingSetting& setting,
                                              const CeilingFlows& flows) {
   const CeilingHall hall(setting);
   const tracking::PatchFinder finder(setting.finder());
-  FlowChain chain(setting.known_camera());
+  const localization::CeilingCamera known = setting.known_camera();
+  tracking::FrameFlow chain(known.model, known.rMc.linear());
   tracking::EdgeFlowParams window;
   window.max_shift_px = 3;
   window.max_turn = from_deg(0.9);
@@ -127,7 +92,10 @@ std::vector<CeilingFrame> read_ceiling_drive(const CeilingSetting& setting,
     }
     const vpImage<unsigned char> image = imaging::grey_image(*exposure);
     frame.scan = finder.find(imaging::ImageFrame(image));
-    if (flows.by_key_frames) frame.flow = chain.next(image, frame.flow_agreement);
+    if (flows.by_key_frames) {
+      frame.flow = chain.next(image);
+      frame.flow_agreement = chain.agreement();
+    }
     if (!flows.published) continue;
     tracking::EdgeImage now = tracking::find_edges(image, window);
     if (edges) frame.edges = tracking::match_edges(*edges, now, window);

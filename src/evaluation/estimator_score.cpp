@@ -44,8 +44,6 @@ EstimatorScorer::EstimatorScorer(EstimatorSetup setup)
   if (!setup_.ceiling) return;
   localization::CeilingFilterParams params;
   params.odometry = setup_.odometry;
-  // Nothing is refused: of a patch its covariance counts, not where it is.
-  params.gate = 1e12;
   ceiling_.emplace(setup_.ceiling->camera, setup_.ceiling->grid, params);
   ceiling_->reset({}, {{}, setup_.prior_covariance});
 }
@@ -59,7 +57,7 @@ void EstimatorScorer::add(const mission::EstimatorTick& tick, std::size_t locali
                                    tick.odometry.to);
     bound_.predict(truth.pose_before, u, control_covariance(u, setup_.odometry));
     if (ceiling_) {
-      ceiling_->relinearise(truth.pose_before, {}, {});
+      ceiling_->place({truth.pose_before, {}, {}});
       ceiling_->predict(u);
     }
     if (corners_) {
@@ -97,8 +95,7 @@ void EstimatorScorer::bound_by(const Observation& observation,
     return;
   }
   if (const auto* seen = std::get_if<PatchesObservation>(&observation); seen && ceiling_) {
-    ceiling_->relinearise(truth.pose, {}, {});
-    ceiling_->update(seen->patches);
+    ceiling_->inform({truth.pose, {}, {}}, seen->patches);
     return;
   }
   if (const auto* seen = std::get_if<StereoObservation>(&observation); seen && corners_) {

@@ -21,6 +21,11 @@ constexpr double kNegligible = 1e-6;
 constexpr double kForgotten_px = 40.0;  // beyond the border
 constexpr double kPlain_px = 8.0;       // from the border: a patch there should be found
 constexpr int kIterations = 5;
+constexpr int kSingle = 16;  // frames with one patch, which may be none, for one with more
+constexpr double kUnseenMotions[] = {4.0, 16.0, 64.0};  // variances of a tick
+constexpr double kCalming = 0.9;                        // a tick
+constexpr double kFlowSlack_m = 0.01;
+constexpr double kTiltedFlow = 0.3;  // how far from the middle the texture's may be, in distances
 constexpr double kAtRest = 1e-7;
 
 Eigen::Matrix2d world_to_robot(double theta) {
@@ -56,6 +61,7 @@ void CeilingFilter::reset(Stamp stamp, const Prior& prior) {
   cells_unsure_ = false;
   gated_ = 0;
   unknown_s_ = 0.0;
+  lively_Q_.setZero();
   refresh_belief();
 }
 
@@ -74,6 +80,7 @@ void CeilingFilter::move(const Pose2& to, const MotionJacobian& F, const Eigen::
   P_.leftCols<3>().bottomRows(P_.rows() - 3) = rows.rightCols(P_.cols() - 3).transpose();
   const Eigen::Matrix3d pose = rows.leftCols<kCommon>() * F.transpose();
   P_.topLeftCorner<3, 3>() = 0.5 * (pose + pose.transpose()) + Q;
+  lively_Q_ = Q.trace() > kCalming * lively_Q_.trace() ? Q : kCalming * lively_Q_;
   refresh_belief();
 }
 
@@ -86,29 +93,68 @@ void CeilingFilter::predict(const OdometryIncrement& u) {
   move(vigia::move(from, u), F, G * control_covariance(u, params_.odometry) * G.transpose());
 }
 
-void CeilingFilter::predict(const ImageShift& shift, Stamp to) {
+/// The flow was levelled by the mounting as it was known. A tilt τ puts the vertical beside the
+/// middle of what it took for level, at o = (−τy, τx), so that a turn seems to be a shift, too: s =
+/// s′ − (I − R) o. What a tilt does besides, by where in the picture the texture lies, is taken for
+/// noise.
+CeilingFilter::Motion CeilingFilter::seen_motion(const ImageShift& shift) const {
   const Pose2 from = pose();
   const CeilingCamera camera = corrected(camera_, camera_errors());
-  const Pose2 motion = robot_motion(camera, shift);
+  const Eigen::Vector2d tilt = x_.segment<2>(3);
+  Eigen::Matrix2d beside;
+  beside << 0.0, -1.0, 1.0, 0.0;
+  const Eigen::Matrix2d dshift_dtilt =
+      (Eigen::Rotation2Dd(shift.turn).toRotationMatrix() - Eigen::Matrix2d::Identity()) * beside;
+  ImageShift level = shift;
+  level.shift += dshift_dtilt * tilt;
+  Motion motion{robot_motion(camera, level), MotionJacobian::Zero(), Eigen::Matrix3d::Zero()};
   const Eigen::Matrix2d R = Eigen::Rotation2Dd(from.theta).toRotationMatrix();
-  const Eigen::Vector2d step = R * motion.position();
-  MotionJacobian F = MotionJacobian::Zero();
-  F.leftCols<3>().setIdentity();
-  F.block<2, 1>(0, 2) = Eigen::Vector2d(-step.y(), step.x());
-  F.block<2, 1>(0, 5) = R * (camera.rise_m() * shift.shift);
+  const Eigen::Vector2d step = R * motion.step.position();
+  motion.F.leftCols<3>().setIdentity();
+  motion.F.block<2, 1>(0, 2) = Eigen::Vector2d(-step.y(), step.x());
+  motion.F.block<2, 2>(0, 3) = camera.rise_m() * R * dshift_dtilt;
+  motion.F.block<2, 1>(0, 5) = R * (camera.rise_m() * level.shift);
   Eigen::Matrix3d G = Eigen::Matrix3d::Identity();
   G.topLeftCorner<2, 2>() = camera.rise_m() * R;
   Eigen::Matrix3d covariance = shift.covariance;
-  covariance.diagonal().array() += params_.flow_floor * params_.flow_floor;
+  const double tilted = tilt.squaredNorm() + P_(3, 3) + P_(4, 4);
+  covariance.diagonal().array() += params_.flow_floor * params_.flow_floor +
+                                   kTiltedFlow * kTiltedFlow * tilted * shift.shift.squaredNorm();
+  motion.Q = G * covariance * G.transpose();
+  return motion;
+}
+
+void CeilingFilter::predict(const ImageShift& shift, Stamp to) {
+  const Motion seen = seen_motion(shift);
+  const double reach = params_.max_speed_mps * (to - stamp_).seconds() + kFlowSlack_m;
+  if (seen.step.position().norm() > reach || reach > 0.5 * grid_.pitch_m) {
+    predict_unknown(to);
+    return;
+  }
   stamp_ = to;
-  move(compose(from, motion), F, G * covariance * G.transpose());
+  move(compose(pose(), seen.step), seen.F, seen.Q);
+}
+
+void CeilingFilter::predict(const OdometryIncrement& u, const ImageShift& shift) {
+  const Motion seen = seen_motion(shift);
+  const Eigen::Matrix3d G = move_jacobian_control(pose(), u);
+  const Eigen::Vector3d off = difference(compose(pose(), seen.step), vigia::move(pose(), u));
+  Eigen::Matrix3d S = G * control_covariance(u, params_.odometry) * G.transpose() + seen.Q;
+  // What tilt and height leave of the flow, and odometry's own variance where it reads nothing.
+  S.diagonal().array() += kFlowSlack_m * kFlowSlack_m;
+  if (off.dot(S.ldlt().solve(off)) > params_.gate) {
+    predict(u);
+    return;
+  }
+  stamp_ = u.to;
+  move(compose(pose(), seen.step), seen.F, seen.Q);
 }
 
 void CeilingFilter::predict_unknown(Stamp to) {
   // The robot may have kept one direction all the time: σ grows as the time, not as its root.
   const double before = unknown_s_;
   unknown_s_ += (to - stamp_).seconds();
-  const double reach = 0.5 * params_.max_speed_mps;
+  const double reach = params_.max_speed_mps / 3.0;
   const double turn = 2.0 * params_.max_speed_mps;  // rad/s, of a robot half a metre wide
   const double grown = unknown_s_ * unknown_s_ - before * before;
   Eigen::Matrix3d Q = Eigen::Matrix3d::Zero();
@@ -199,14 +245,15 @@ bool CeilingFilter::in_sight(const CeilingCell& cell, const Pose2& at, double ma
   return true;
 }
 
-/// Keeps the placement errors of the cells in view, forgets the others, admits the new ones. Where
-/// several shifts of the prediction are possible, a patch's cell may be another than it was.
-void CeilingFilter::hold(const std::vector<Seen>& seen, const Pose2& at) {
+/// Keeps the placement errors of the cells in view, forgets the others, admits the new ones.
+/// @p afresh: where several shifts of the prediction are possible, a patch's cell may be another
+/// than it was.
+void CeilingFilter::hold(const std::vector<Seen>& seen, const Pose2& at, bool afresh) {
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < kCommon; ++i) kept.push_back(i);
   std::map<CeilingCell, Eigen::Index> places;
-  cells_unsure_ = open() && !patches_.empty();
-  if (open()) {
+  cells_unsure_ = afresh && !patches_.empty();
+  if (afresh) {
     judged_.clear();
   } else {
     for (const auto& [cell, place] : patches_) {
@@ -293,6 +340,25 @@ std::vector<CeilingFilter::Seen> CeilingFilter::gated(const std::vector<Seen>& s
   return passed;
 }
 
+/// Those that the prediction allows. Where it allows none, two or more are believed that agree with
+/// one over which a multiple of the motion of the liveliest of the last ticks was unseen: odometry
+/// whose variance follows the measured distance is too sure of a tick that it read too short, and a
+/// wheel slips sooner than somebody lifts the robot and puts it down a centimetre further. What is
+/// added is independent of the patches, with whose errors those of the pose go together.
+std::vector<CeilingFilter::Seen> CeilingFilter::passed_gate(const std::vector<Seen>& seen,
+                                                            const Pose2& start) {
+  std::vector<Seen> passed = gated(seen, linearise(seen, state_at(start)));
+  if (!passed.empty() || seen.size() < 2) return passed;
+  const Eigen::Matrix3d before = P_.topLeftCorner<3, 3>();
+  for (const double variances : kUnseenMotions) {
+    P_.topLeftCorner<3, 3>() = before + variances * lively_Q_;
+    passed = gated(seen, linearise(seen, state_at(start)));
+    if (passed.size() >= 2) return passed;
+  }
+  P_.topLeftCorner<3, 3>() = before;
+  return {};
+}
+
 /// Bayes' rule over the shifts by whole cells: each was where the mean is, some cells aside, and
 /// the fix is as many cells aside again.
 void CeilingFilter::weigh_shifts(const Linearised& all, const std::vector<Seen>& seen,
@@ -361,12 +427,13 @@ void CeilingFilter::normalise_shifts() {
   shifts_ = std::move(kept);
 }
 
-/// Patches contradict the prediction again and again: it may be anywhere in its cell and the next.
+/// Patches contradict the prediction again and again: it may be anywhere in its cell and the next,
+/// turned anyhow.
 void CeilingFilter::doubt() {
   const double sigma = 0.5 * grid_.pitch_m;
   P_.topRows<3>().setZero();
   P_.leftCols<3>().setZero();
-  P_.diagonal().head<3>() << sigma * sigma, sigma * sigma, from_deg(30.0) * from_deg(30.0);
+  P_.diagonal().head<3>() << sigma * sigma, sigma * sigma, kPi * kPi / 3.0;
   gated_ = 0;
 }
 
@@ -418,18 +485,22 @@ void CeilingFilter::fuse(const Linearised& all) {
   x_[2] = wrap_angle(x_[2]);
   // Joseph's form: the placement errors of a perfect grid have no variance at all.
   const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(P_.rows(), P_.cols()) - K * all.H;
-  P_ = (left * P_ * left.transpose() + K * all.R * K.transpose()).eval();
+  const Eigen::MatrixXd P = left * P_ * left.transpose() + K * all.R * K.transpose();
+  // What rounding leaves of asymmetry grows from frame to frame, along directions without variance.
+  P_ = 0.5 * (P + P.transpose());
 }
 
 CeilingUpdate CeilingFilter::update(const std::vector<PatchImage>& patches) {
   std::vector<Seen> seen = see(patches);
   if (seen.empty()) return CeilingUpdate::none_seen;
+  const int contradicts = seen.size() > 1 ? kSingle : 1;
   const Pose2 start = point_of_linearisation(seen);
   seen = associated(seen, start);
-  hold(seen, start);
-  const std::vector<Seen> passed = gated(seen, linearise(seen, state_at(start)));
+  hold(seen, start, open());
+  const std::vector<Seen> passed = passed_gate(seen, start);
   if (passed.empty()) {
-    if (++gated_ >= params_.max_gated) doubt();
+    gated_ += contradicts;
+    if (gated_ >= kSingle * params_.max_gated) doubt();
     refresh_belief();
     return CeilingUpdate::gated;
   }
@@ -447,14 +518,24 @@ CeilingUpdate CeilingFilter::update(const std::vector<PatchImage>& patches) {
   return CeilingUpdate::fused;
 }
 
-void CeilingFilter::relinearise(const Pose2& pose, const CeilingCameraErrors& errors,
-                                const std::map<CeilingCell, Eigen::Vector3d>& placement) {
-  x_.head<3>() = pose.vector();
-  x_.segment<3>(3) = errors.vector();
+void CeilingFilter::place(const CeilingTruthState& truth) {
+  x_.setZero();
+  x_.head<3>() = truth.pose.vector();
+  x_.segment<3>(3) = truth.errors.vector();
   for (const auto& [cell, place] : patches_)
-    if (const auto found = placement.find(cell); found != placement.end())
+    if (const auto found = truth.placement.find(cell); found != truth.placement.end())
       x_.segment<3>(place) = found->second;
   refresh_belief();
+}
+
+void CeilingFilter::inform(const CeilingTruthState& truth, const std::vector<PatchImage>& patches) {
+  place(truth);
+  const std::vector<Seen> seen = associated(see(patches), truth.pose);
+  if (seen.empty()) return;
+  hold(seen, truth.pose, false);
+  place(truth);
+  fuse(linearise(seen, x_));
+  place(truth);
 }
 
 void CeilingFilter::refresh_belief() {

@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 using ErrorCovariance = Eigen::Matrix<double, kMirrorErrors, kMirrorErrors>;
 using PoseByErrors = Eigen::Matrix<double, 3, kMirrorErrors>;
 
-enum MirrorError { kScale, kTiltX, kTiltY, kCentreU, kCentreV };
+enum MirrorError { kMirrorScale, kTiltX, kTiltY, kCentreU, kCentreV };
 
 constexpr double kOfLineSigmas = 3.0;   // a point farther off is on no line
 constexpr double kOtherLine = 0.02;     // density of another line beside the best, at most
@@ -43,8 +43,8 @@ Matrix2d plane_rotation(double theta) {
 
 MirrorOnRobot MirrorOnRobot::with(const MirrorErrors& errors) const {
   MirrorOnRobot camera = *this;
-  camera.mirror.px *= 1.0 + errors[kScale];
-  camera.mirror.py *= 1.0 + errors[kScale];
+  camera.mirror.px *= 1.0 + errors[kMirrorScale];
+  camera.mirror.py *= 1.0 + errors[kMirrorScale];
   camera.mirror.u0 += errors[kCentreU];
   camera.mirror.v0 += errors[kCentreV];
   camera.rMc.rotate(Eigen::AngleAxisd(errors[kTiltX], Vector3d::UnitX()) *
@@ -77,7 +77,8 @@ std::optional<FloorOfPixel> floor_of_pixel(const MirrorOnRobot& camera, const Ve
   floor.p_r = (eye + t * d).head<2>();
   // A longer focal length, or a middle farther on, shows at a pixel what was nearer to the old
   // middle.
-  floor.dp_derrors.col(kScale) = -dp_duv * (uv - Vector2d(camera.mirror.u0, camera.mirror.v0));
+  floor.dp_derrors.col(kMirrorScale) =
+      -dp_duv * (uv - Vector2d(camera.mirror.u0, camera.mirror.v0));
   floor.dp_derrors.col(kTiltX) = dp_ddc * Vector3d::UnitX().cross(*d_c);
   floor.dp_derrors.col(kTiltY) = dp_ddc * Vector3d::UnitY().cross(*d_c);
   floor.dp_derrors.col(kCentreU) = -dp_duv.col(0);

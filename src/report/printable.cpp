@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
+#include "vigia/core/ceiling_grid.hpp"
 #include "vigia/core/error.hpp"
 #include "vigia/core/overloaded.hpp"
 #include "vigia/imaging/tag_bitmap.hpp"
@@ -17,6 +19,7 @@ namespace vigia::report {
 namespace {
 
 constexpr double kPlateFactor = 1.6;     // half a disc's sheet over its radius, as the simulator's
+constexpr double kPatchPlate = 0.65;     // half a patch's sheet over its length
 constexpr double kNarrowest = 0.12;      // m, so that the words have room
 constexpr double kStrip = 0.034;         // m below the sheet
 constexpr double kMargin = 0.006;        // m
@@ -72,16 +75,27 @@ struct Words {
         "AprilTag 36h11, number " + std::to_string(tag.tag),
         "Side of the black square " + millimetres(tag.side_m) + ". Hang it flat, this line below."};
   }
+  std::vector<std::string> operator()(const PatchShape& patch) const {
+    return {"Ceiling patch, " + millimetres(patch.length_m) + " × " + millimetres(patch.width_m),
+            patch.polarity ? "Cut it out. Its narrow end points along the grid's x."
+                           : "Cut it out. Its long axis lies along the grid's x."};
+  }
 };
 
-double sheet_half_width(const LandmarkShape& shape) {
+template <typename Shape>
+double landmark_half_width(const Shape& shape) {
   Landmark landmark;
   landmark.shape = shape;
-  const double plate = std::visit(
-      Overloaded{[](const DiscShape&) { return kPlateFactor; },
-                 [](const PatternShape&) { return 1.0; }, [](const TagShape&) { return 1.0; }},
+  return half_width(landmark);
+}
+
+double sheet_half_width(const LandmarkShape& shape) {
+  return std::visit(
+      Overloaded{[](const DiscShape& disc) { return landmark_half_width(disc) * kPlateFactor; },
+                 [](const PatternShape& pattern) { return landmark_half_width(pattern); },
+                 [](const TagShape& tag) { return landmark_half_width(tag); },
+                 [](const PatchShape& patch) { return patch.length_m * kPatchPlate; }},
       shape);
-  return half_width(landmark) * plate;
 }
 
 /// Draws in metres from the landmark's centre, x right, y down.
@@ -115,6 +129,26 @@ struct Picture {
         if (black[row][column])
           cairo_rectangle(sheet.context(), corner.x() + static_cast<double>(column) * field,
                           corner.y() + static_cast<double>(row) * field, field, field);
+    sheet.fill(ink_of(DotColour::black));
+  }
+
+  // Forward is up.
+  void operator()(const PatchShape& patch) const {
+    const double half = 0.5 * patch.length_m;
+    const double side = 0.5 * patch.width_m;
+    const double shoulder = patch.polarity ? half - kTongueLength * patch.length_m : half;
+    const double tongue = patch.polarity ? 0.5 * kTongueWidth * patch.width_m : side;
+    cairo_new_path(sheet.context());
+    for (const auto& [x, y] : {std::pair{-side, half},
+                               {side, half},
+                               {side, -shoulder},
+                               {tongue, -shoulder},
+                               {tongue, -half},
+                               {-tongue, -half},
+                               {-tongue, -shoulder},
+                               {-side, -shoulder}})
+      cairo_line_to(sheet.context(), centre.x() + scale * x, centre.y() + scale * y);
+    cairo_close_path(sheet.context());
     sheet.fill(ink_of(DotColour::black));
   }
 };
@@ -186,6 +220,11 @@ struct Scaled {
   LandmarkShape operator()(TagShape tag) const {
     tag.side_m *= scale;
     return tag;
+  }
+  LandmarkShape operator()(PatchShape patch) const {
+    patch.length_m *= scale;
+    patch.width_m *= scale;
+    return patch;
   }
 };
 

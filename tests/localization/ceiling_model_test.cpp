@@ -139,6 +139,121 @@ TEST(CeilingFilter, FindsTiltAndHeightFromThePatchesThatItSees) {
   EXPECT_EQ(filter.belief().status, BeliefStatus::tracking);
 }
 
+TEST(CeilingFilter, AThousandFramesLeaveItsCovarianceSymmetric) {
+  CeilingFilterParams params;
+  params.tilt_sigma = from_deg(0.3);
+  params.height_sigma = 0.005;
+  CeilingGrid grid;
+  grid.placement_m = 0.005;
+  grid.placement_turn = from_deg(1.3);
+  CeilingFilter filter(up_camera(), grid, params);
+  Pose2 robot{0.2, 0.1, 0.4};
+  filter.reset({}, near(robot, 0.05, 0.05));
+  for (int i = 1; i <= 1000; ++i) {
+    const OdometryIncrement u{filter.belief().stamp, Stamp::from_seconds(0.04 * i), 0.02, 0.0,
+                              0.004};
+    robot = move(robot, u);
+    filter.predict(u);
+    ASSERT_EQ(filter.update(images_about(up_camera(), {}, robot)), CeilingUpdate::fused) << i;
+    for (const Eigen::Matrix3d& P : {filter.belief().covariance, filter.camera_errors_covariance()})
+      ASSERT_LT((P - P.transpose()).norm(), 1e-12 * P.norm()) << i;
+  }
+  EXPECT_LT((filter.belief().pose.position() - robot.position()).norm(), 1e-3);
+}
+
+/// The variance of odometry follows the distance that it reads: next to nothing is uncertain at
+/// zero.
+TEST(CeilingFilter, ATickThatTheOdometryReadTooShortIsNoContradiction) {
+  CeilingGrid grid;
+  grid.placement_m = 0.005;
+  grid.placement_turn = from_deg(1.3);
+  CeilingFilterParams params;
+  params.odometry = {0.02, 0.02, 0.02};
+  CeilingFilter filter(up_camera(), grid, params);
+  Pose2 robot{0.2, 0.1, 0.4};
+  filter.reset({}, near(robot, 0.05, 0.05));
+  const auto drive = [&](int i, double read_m) {
+    const Stamp now = Stamp::from_seconds(0.04 * i);
+    robot = move(robot, {filter.belief().stamp, now, 0.0, 0.02, 0.0});
+    filter.predict(OdometryIncrement{filter.belief().stamp, now, 0.0, read_m, 0.0});
+    return filter.update(images_about(up_camera(), {}, robot));
+  };
+  for (int i = 1; i < 20; ++i) ASSERT_EQ(drive(i, 0.02), CeilingUpdate::fused);
+  const double sigma = filter.belief().position_sigma();
+  EXPECT_EQ(drive(20, 0.01), CeilingUpdate::fused);
+  EXPECT_LT((filter.belief().pose.position() - robot.position()).norm(), 3.0 * sigma);
+  // It taught nothing of where all patches together hang.
+  EXPECT_GT(filter.belief().position_sigma(), 0.98 * sigma);
+}
+
+/// How the picture of the ceiling moves when the camera does by @p step, well measured.
+ImageShift shift_of(const Pose2& step) {
+  ImageShift shift;
+  shift.shift = step.position() / up_camera().rise_m();
+  shift.turn = step.theta;
+  shift.covariance = 1e-8 * Eigen::Matrix3d::Identity();
+  return shift;
+}
+
+TEST(CeilingFilter, BelievesTheFlowThatTheOdometryBearsOutAndNoOther) {
+  CeilingCamera camera = up_camera();
+  camera.rMc.translation() = Eigen::Vector3d(0.0, 0.0, 0.5);
+  CeilingFilterParams params;
+  params.max_speed_mps = 1.0;
+  CeilingFilter filter(camera, {}, params);
+  const Pose2 start{0.2, 0.1, 0.0};
+  const OdometryIncrement u{{}, Stamp::from_seconds(0.2), 0.0, 0.1, 0.0};
+  const auto after = [&](const auto&... motion) {
+    filter.reset({}, near(start, 1e-3, 1e-3));
+    filter.predict(motion...);
+    return filter.belief();
+  };
+  EXPECT_NEAR(after(u, shift_of({0.11, 0.0, 0.0})).pose.x, 0.31, 1e-6);
+  EXPECT_NEAR(after(u, shift_of({-0.3, 0.1, 0.2})).pose.x, 0.30, 1e-9);
+  const Belief fast = after(shift_of({0.3, 0.0, 0.0}), u.to);
+  EXPECT_NEAR(fast.pose.x, 0.2, 1e-9);
+  EXPECT_GT(fast.position_sigma(), 0.05);
+}
+
+/// A picture that is levelled wrong by a tilt sees a turn on the spot as a shift, too.
+TEST(CeilingFilter, ATurnUnderATiltIsNoShift) {
+  CeilingCamera camera = up_camera();
+  camera.rMc.translation() = Eigen::Vector3d(0.0, 0.0, 0.5);
+  const CeilingCameraErrors errors{0.02, -0.03, 0.0};
+  CeilingFilterParams params;
+  params.max_speed_mps = 5.0;
+  CeilingFilter filter(camera, {}, params);
+  filter.reset({}, near({}, 1e-4, 1e-4));
+  filter.place({Pose2{}, errors, {}});
+  // A patch above, as it is seen before and after the turn, by the camera that is thought level.
+  constexpr double kTurn = 0.1;
+  const Eigen::Vector2d o(-errors.tilt_y, errors.tilt_x);
+  ImageShift seen = shift_of({0.0, 0.0, kTurn});
+  seen.shift = o - Eigen::Rotation2Dd(kTurn) * o;
+  filter.predict(seen, Stamp::from_seconds(0.04));
+  EXPECT_LT(filter.belief().pose.position().norm(), 1e-9);
+  // That it is so is what the camera's images say.
+  const Pose2 turned{0.0, 0.0, kTurn};
+  const PatchImage before = image_of(camera, errors, {}, {0.0, 0.0, 0.0});
+  const PatchImage after = image_of(camera, errors, turned, {0.0, 0.0, 0.0});
+  const Eigen::Vector2d m1 = on_ceiling(camera, before)->q / camera.rise_m();
+  const Eigen::Vector2d m2 = on_ceiling(camera, after)->q / camera.rise_m();
+  EXPECT_LT((m2 - Eigen::Rotation2Dd(-kTurn) * (m1 - seen.shift)).norm(), 1e-4);
+}
+
+TEST(CeilingFilter, OnePatchTooManyIsNoKidnapping) {
+  CeilingFilter filter(up_camera(), {}, {});
+  const Pose2 robot{0.2, 0.1, 0.4};
+  filter.reset({}, near(robot, 0.002, 0.002));
+  const PatchImage spurious = image_of(up_camera(), {}, robot, {0.4, 0.3, 0.9});
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(filter.update({spurious}), CeilingUpdate::gated);
+  EXPECT_EQ(filter.belief().status, BeliefStatus::tracking);
+  auto elsewhere = images_about(up_camera(), {}, {0.5, 0.5, 0.9});
+  ASSERT_GT(elsewhere.size(), 1U);
+  for (int i = 0; i < 3; ++i) filter.update(elsewhere);
+  EXPECT_EQ(filter.belief().status, BeliefStatus::ambiguous);
+}
+
 TEST(CeilingFilter, IsAmbiguousWithTheTruthAmongItsHypothesesAfterDrivingUnseenForHalfAPitch) {
   CeilingFilter filter(up_camera(), {}, {});
   filter.reset({}, near({0.0, 0.0, 0.0}, 0.01, 0.01));
@@ -170,7 +285,7 @@ TEST(CeilingFilter, PatchesBeyondTheGridsEdgeSettleWhichCellItIs) {
     CeilingFilter filter(up_camera(), edge ? grid : CeilingGrid{}, {});
     filter.reset({}, near({0.0, 0.0, 0.0}, 0.01, 0.01));
     filter.update(images_about(up_camera(), {}, {0.0, 0.0, 0.0}, grid));
-    filter.predict_unknown(Stamp::from_seconds(2.5));
+    filter.predict_unknown(Stamp::from_seconds(3.75));
     const Pose2 robot{0.0, 0.0, 0.0};
     ASSERT_EQ(filter.update(images_about(up_camera(), {}, robot, grid)), CeilingUpdate::fused);
     double right = 0.0;

@@ -9,12 +9,14 @@
 
 #include <gtest/gtest.h>
 
+#include "vigia/core/angle.hpp"
 #include "vigia/core/camera.hpp"
 #include "vigia/core/error.hpp"
 #include "vigia/core/random.hpp"
 #include "vigia/imaging/canvas.hpp"
 #include "vigia/imaging/image_frame.hpp"
 #include "vigia/tracking/ellipse_tracker.hpp"
+#include "vigia/tracking/patch_finder.hpp"
 #include "vigia/tracking/point_tracker.hpp"
 
 namespace vigia::report {
@@ -175,6 +177,22 @@ TEST_P(Printing, ADiscSeenByACameraHasItsRadius) {
   EXPECT_NEAR(found[0].ellipse.a, 0.06 / 1.5 * k.px, 0.3);
   EXPECT_NEAR(found[0].ellipse.u, 319.5, 0.5);
   EXPECT_NEAR(found[0].ellipse.v, 239.5, 0.5);
+}
+
+TEST_P(Printing, ACeilingPatchSeenByACameraIsOneAndItsTonguePointsUp) {
+  const PatchShape shape{0.09, 0.03, true};
+  Eigen::Isometry3d lMc = Eigen::Isometry3d::Identity();
+  lMc.linear().diagonal() << 1.0, -1.0, -1.0;
+  lMc.translation() << 0.0, 0.0, 1.5;
+  const Intrinsics k = zoom(0.3, 1.5);
+  tracking::PatchFinderParams params;
+  params.length_px = 0.09 / 1.5 * k.px;
+  params.width_px = 0.03 / 1.5 * k.px;
+  const auto scan = tracking::PatchFinder(params).find(photograph(print(shape), lMc, k));
+  ASSERT_EQ(scan.patches.size(), 1U);
+  EXPECT_LT((scan.patches[0].uv - Eigen::Vector2d(319.5, 239.5)).norm(), 0.5);
+  EXPECT_NEAR(to_deg(scan.patches[0].angle), -90.0, 1.0);
+  EXPECT_GT(scan.patches[0].forward_log_odds, 5.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, Printing, ::testing::Values("png", "pdf", "svg"),

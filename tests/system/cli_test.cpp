@@ -72,13 +72,14 @@ INSTANTIATE_TEST_SUITE_P(
                    "unknown command 'rn'; did you mean 'run'? (commands: run, plan, check, "},
         WrongUsage{"CommandLikeNone", "quixotize", "unknown command 'quixotize' (commands: run"},
         WrongUsage{"KindOfLandmark", "landmark dsc -o x.pdf",
-                   "unknown command 'dsc'; did you mean 'disc'? (commands: disc, pattern, tag)"},
+                   "unknown command 'dsc'; did you mean 'disc'? (commands: disc, pattern, tag, "
+                   "ceiling)"},
         WrongUsage{"Option", "run x.yaml --sede=3",
                    "unknown option '--sede'; did you mean '--seed'? (options: --help, --seed"},
         WrongUsage{"Argument", "check a.yaml b.yaml", "'b.yaml' is one argument too many"},
         WrongUsage{"Tracker", "track --tracker dics x.png",
                    "found 'dics', must be one of disc, ellipse, correlation, pattern, tag, "
-                   "field_scan; did you "
+                   "field_scan, ceiling; did you "
                    "mean 'disc'?"},
         WrongUsage{"Policy", "plan x.yaml --policy nearst",
                    "found 'nearst', must be one of fixed, random, nearest, greedy, fuzzy, pattern; "

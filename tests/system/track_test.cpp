@@ -2,6 +2,7 @@
 #include "support/temp_dir.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -225,6 +226,16 @@ TEST_F(Track, MistakesOfTheCommandAreNamed) {
        "--mirror: found '80,60,10', must be U,V,INNER,OUTER"},
       {picture + " --tracker field_scan --ids 3", "a field has no --ids"},
       {picture + " --tracker field_scan --panorama", "--panorama: needs --out DIR"},
+      {picture + " --tracker ceiling", "how large are the patches in the pictures?"},
+      {picture + " --tracker ceiling --patch-px 20",
+       "--patch-px: found '20', must be LENGTH:WIDTH"},
+      {picture + " --tracker ceiling --patch-px 20:18", "1.5 WIDTH ≤ LENGTH"},
+      {picture + " --tracker ceiling --patch-px 20:7 --rise-m 2", "only with --camera"},
+      {picture + " --tracker ceiling --camera " + camera, "Give --rise-m H"},
+      {picture + " --tracker ceiling --ids 3", "patches have no --ids"},
+      {picture + " --tracker ceiling --rise-m 2 --placement 1:2 --camera " + camera,
+       "--placement: found '1:2', must be METRES:DEGREES"},
+      {picture + " --patch-px 20:7", "are for --tracker ceiling"},
       {picture + " --camera " + camera, "--camera: how large are the landmarks?"},
       {picture + " --size 0.2", "only with --camera"},
       {picture + " --size 0.2 --camera /nowhere.xml", "/nowhere.xml: the file does not exist"},
@@ -243,6 +254,65 @@ TEST_F(Track, MistakesOfTheCommandAreNamed) {
     EXPECT_THAT(given.err, Not(HasSubstr("secret")));
     EXPECT_EQ(given.out, "") << wrong_use.arguments;
   }
+}
+
+/// A plain strip of 24 × 8 px about (u, v), its axis at @p angle, antialiased.
+std::string strip_picture(double u, double v, double angle) {
+  constexpr int kFine = 4;
+  std::string pgm = "P5\n160 120\n255\n";
+  for (int y = 0; y < 120; ++y)
+    for (int x = 0; x < 160; ++x) {
+      int inside = 0;
+      for (int i = 0; i < kFine * kFine; ++i) {
+        const double du = x + (i % kFine + 0.5) / kFine - 0.5 - u;
+        const double dv = y + (i / kFine + 0.5) / kFine - 0.5 - v;
+        const double along = du * std::cos(angle) + dv * std::sin(angle);
+        const double across = dv * std::cos(angle) - du * std::sin(angle);
+        inside += std::abs(along) < 12.0 && std::abs(across) < 4.0 ? 1 : 0;
+      }
+      pgm += static_cast<char>(200 - 140 * inside / (kFine * kFine));
+    }
+  return pgm;
+}
+
+TEST_F(Track, APatchOfACeilingIsAPlaceADirectionAndUnderAKnownCameraAPose) {
+  const auto camera = file("camera.xml", kCameraXml);
+  const auto one = file("one.pgm", strip_picture(70.25, 50.5, 0.2));
+  const auto two = file("two.pgm", strip_picture(74.25, 50.5, 0.2));
+  const auto found = vigia("track --tracker ceiling --plain --patch-px 24:8 " + one.string());
+  ASSERT_EQ(found.status, 0) << found.err;
+  const auto rows = cells_of(found.out);
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0][5], "u");
+  EXPECT_NEAR(std::stod(rows[1][5]), 70.25, 0.05);
+  EXPECT_NEAR(std::stod(rows[1][6]), 50.5, 0.05);
+  EXPECT_NEAR(std::stod(rows[1][7]), 0.2 * 180.0 / 3.14159265, 0.5);
+  // 0.09 m are 24 px of a lens of 400 px at 1.5 m: 4 px are 15 mm.
+  const auto posed = vigia("track --tracker ceiling --plain --rise-m 1.5 --camera " +
+                           camera.string() + " " + one.string() + " " + two.string());
+  ASSERT_EQ(posed.status, 0) << posed.err;
+  const auto poses = cells_of(posed.out);
+  ASSERT_EQ(poses.size(), 3U);
+  EXPECT_EQ(poses[0][5], "x_m");
+  const double dx = std::stod(poses[2][5]) - std::stod(poses[1][5]);
+  const double dy = std::stod(poses[2][6]) - std::stod(poses[1][6]);
+  EXPECT_NEAR(std::hypot(dx, dy), 0.015, 0.001);
+  EXPECT_NEAR(std::stod(poses[1][7]), -0.2 * 180.0 / 3.14159265, 0.5);
+}
+
+TEST_F(Track, TooFewPatchesCalibrateNothing) {
+  const auto camera = file("camera.xml", kCameraXml);
+  const auto one = file("one.pgm", strip_picture(70.25, 50.5, 0.2));
+  const std::string command = "calibrate ceiling --plain --camera " + camera.string() + " ";
+  const auto result = vigia(command + "--rise-m 1.5 " + one.string());
+  EXPECT_EQ(result.status, 1);
+  EXPECT_EQ(result.out, "");
+  EXPECT_THAT(result.err, HasSubstr("not calibrated: 1 pictures with patches that agree"));
+  EXPECT_EQ(vigia(command + one.string()).status, 2);
+  const auto other = file("other.pgm", disc_picture(40.0, 60.0, 14.0, 100, 120));
+  const auto wrong = vigia(command + "--rise-m 1.5 " + other.string());
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("100×120 pixels, but --camera is calibrated for 160×120"));
 }
 
 TEST_F(Track, WithoutADisplayAWindowIsAnError) {

@@ -20,11 +20,19 @@ struct CeilingFilterParams {
   double height_sigma = 0.0;  ///< of the ceiling's distance, relative
   double gate = 16.27;        ///< χ² of a patch's three numbers
   double flow_floor = 2e-4;   ///< σ of a frame's shift beside what it claims, in ceiling distances
-  double max_speed_mps = 0.3;  ///< where nothing else is known of the motion
+  double max_speed_mps = 0.3;  ///< of the robot, which is all that is known without odometry
   double sure = 0.99;          ///< a hypothesis is believed alone from this weight on
   double spurious = 0.02;      ///< chance that a patch hangs where the grid has none
   double missing = 0.05;       ///< … and that one of the grid's is not found in plain sight
   int max_gated = 3;  ///< frames in a row that contradict the prediction, until it is doubted
+};
+
+/// The filter's state as it truly is.
+struct CeilingTruthState {
+  Pose2 pose;
+  CeilingCameraErrors errors;
+  /// x, y and direction of a cell's patch beside its place; 0 where nothing is said.
+  std::map<CeilingCell, Eigen::Vector3d> placement;
 };
 
 /// What became of a frame's patches.
@@ -52,8 +60,11 @@ class CeilingFilter {
 
   void reset(Stamp stamp, const Prior& prior);
   void predict(const OdometryIncrement& increment);
-  /// The motion between two frames by optical flow.
+  /// The motion between two frames by optical flow. It says nothing where it is faster than the
+  /// robot can be, nor where the robot may have gone half a pitch: the patches repeat.
   void predict(const ImageShift& shift, Stamp to);
+  /// By the flow, unless the odometry contradicts it.
+  void predict(const OdometryIncrement& increment, const ImageShift& shift);
   /// Nothing is known but how fast the robot may be.
   void predict_unknown(Stamp to);
   CeilingUpdate update(const std::vector<PatchImage>& patches);
@@ -63,10 +74,11 @@ class CeilingFilter {
   CeilingCameraErrors camera_errors() const;
   Eigen::Matrix3d camera_errors_covariance() const;
 
-  /// For bounds: the same recursion linearised at the truth. Replaces the mean, errors of the
-  /// camera and of the patches in view among it.
-  void relinearise(const Pose2& pose, const CeilingCameraErrors& errors,
-                   const std::map<CeilingCell, Eigen::Vector3d>& placement);
+  /// For bounds: the mean becomes the truth, at which predict() then linearises.
+  void place(const CeilingTruthState& truth);
+  /// For bounds: what patches teach, each of them in its true cell and linearised at the truth.
+  /// Nothing is weighed, doubted or refused but what hangs where the grid has no patch.
+  void inform(const CeilingTruthState& truth, const std::vector<PatchImage>& patches);
 
  private:
   struct Seen {
@@ -91,10 +103,11 @@ class CeilingFilter {
   std::vector<Seen> associated(const std::vector<Seen>& seen, const Pose2& pose) const;
   Pose2 point_of_linearisation(const std::vector<Seen>& seen) const;
   bool in_sight(const CeilingCell& cell, const Pose2& at, double margin_px) const;
-  void hold(const std::vector<Seen>& seen, const Pose2& at);
+  void hold(const std::vector<Seen>& seen, const Pose2& at, bool afresh);
   Eigen::VectorXd state_at(const Pose2& pose) const;
   Linearised linearise(const std::vector<Seen>& seen, const Eigen::VectorXd& at) const;
   std::vector<Seen> gated(const std::vector<Seen>& seen, const Linearised& all) const;
+  std::vector<Seen> passed_gate(const std::vector<Seen>& seen, const Pose2& start);
   Eigen::MatrixXd gain(const Linearised& all) const;
   Eigen::VectorXd fused_state(const Linearised& all) const;
   Eigen::VectorXd converged(const std::vector<Seen>& seen, const Pose2& start) const;
@@ -105,6 +118,13 @@ class CeilingFilter {
   void doubt();
   void shift_by(CeilingCell shift);
   using MotionJacobian = Eigen::Matrix<double, 3, 6>;
+  /// A motion in the robot's frame, what it makes of the state's covariance, and its own.
+  struct Motion {
+    Pose2 step;
+    MotionJacobian F;
+    Eigen::Matrix3d Q;
+  };
+  Motion seen_motion(const ImageShift& shift) const;
   void move(const Pose2& to, const MotionJacobian& F, const Eigen::Matrix3d& Q);
   void refresh_belief();
 
@@ -117,8 +137,10 @@ class CeilingFilter {
   Shifts shifts_;
   std::set<CeilingCell> judged_;  ///< cells in view whose presence or absence was weighed
   bool cells_unsure_ = false;  ///< whether the patches before were perhaps the same in other cells
-  int gated_ = 0;              ///< frames in a row
-  double unknown_s_ = 0.0;     ///< for how long nothing was known of the motion
+  int gated_ = 0;              ///< frames in a row, weighed
+  /// Of the motion in a tick lately, at most; world frame.
+  Eigen::Matrix3d lively_Q_ = Eigen::Matrix3d::Zero();
+  double unknown_s_ = 0.0;  ///< for how long nothing was known of the motion
   Stamp stamp_;
   Belief belief_;
 };

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <variant>
 
 #include <Eigen/Core>
 
@@ -9,7 +10,15 @@
 
 namespace vigia::report {
 
-using LandmarkShape = decltype(Landmark::shape);
+/// A patch of a ceiling: a strip, with a tongue at its forward end where it has a polarity mark.
+struct PatchShape {
+  double length_m = 0.09;
+  double width_m = 0.03;
+  bool polarity = true;
+};
+
+/// What can be printed.
+using LandmarkShape = std::variant<DiscShape, PatternShape, TagShape, PatchShape>;
 
 /// A page with a landmark at true scale, metres: the landmark's sheet at the top, below it what the
 /// landmark is, in words, and a bar to check the scale of the print.

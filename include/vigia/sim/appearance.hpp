@@ -61,6 +61,8 @@ struct Appearance {
   double patches_spurious = 0.0;  ///< share of the cells that have a second one, anywhere in them
   double lamp_pitch_m = 0.0;      ///< between lamps on such a ceiling; 0: none
   double lamp_grey = 252.0;
+  double pipe_pitch_m = 0.0;  ///< between pipes along x that hang below it; 0: none
+  double pipe_drop_m = 0.1;
   std::vector<Stripe> stripes;
   std::vector<Clutter> clutter;  ///< named in the file and drawn at random
 };

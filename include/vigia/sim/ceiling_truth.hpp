@@ -17,6 +17,9 @@ struct CeilingTruth {
   double patch_grey = 55.0;
   double lamp_pitch_m = 0.0;  ///< between lamps of 1.2 by 0.2 m, midway between patches; 0: none
   double lamp_grey = 252.0;
+  double pipe_pitch_m = 0.0;  ///< between pipes along x, which hang before patches; 0: none
+  double pipe_width_m = 0.1;
+  double pipe_drop_m = 0.1;  ///< of their lower side below the ceiling
 };
 
 /// Where the cell's patch truly hangs, seen from above; nothing where none does.

@@ -10,7 +10,7 @@
 namespace vigia::tracking {
 
 /// A tracker makes one of two: an ellipse of a disc, or the labelled points of a landmark that says
-/// who it is. The scan of a field makes neither: it follows nothing from picture to picture.
+/// who it is. The scans of a field and of a ceiling make neither: they follow nothing.
 struct TrackerEntry : NameEntry {
   std::unique_ptr<EllipseTracker> (*make_ellipse)();
   std::unique_ptr<PointTracker> (*make_points)(const KnownCodes& known);
