@@ -80,7 +80,8 @@ void describe_surfaces(ParamVisitor& v, Appearance& a) {
   v.number("wall_grey", a.wall_grey, kGrey, "of the walls");
   v.number("floor_grey", a.floor_grey, kGrey, "of the floor");
   v.number("ceiling_grey", a.ceiling_grey, kGrey, "of the ceiling");
-  v.number("obstacle_grey", a.obstacle_grey, kGrey, "of the obstacles");
+  v.number("obstacle_grey", a.obstacle_grey, kGrey,
+           "of the obstacles: below 200 they are of wood, from there on painted white");
   v.number("disc_grey", a.disc_grey, kGrey, "of the discs");
   v.number("plate_grey", a.plate_grey, kGrey, "of the sheet round a disc");
   v.number("plate_factor", a.plate_factor, {1.05, 10.0},

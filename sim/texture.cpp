@@ -61,6 +61,8 @@ Profile paint_profile(double length_m, bool repeats, Paint paint) {
 }
 
 /// Tint with luma 1 (Rec. 709) from its red and blue.
+constexpr double kPainted = 200.0;  // an obstacle's grey level from which on it is painted white
+
 std::array<float, 3> tint(double red, double blue) {
   const double green = (1.0 - 0.2126 * red - 0.0722 * blue) / 0.7152;
   return {static_cast<float>(red), static_cast<float>(green), static_cast<float>(blue)};
@@ -127,7 +129,7 @@ Material obstacle_material(double grey, double contrast, std::uint64_t seed) {
   box.along_t = paint_profile(0.4, true, [&](double h) {
     return contrast * (-24.0 * band(h, 0.19, 0.21) + 8.0 * band(h, 0.21, 0.225));
   });
-  box.tint = tint(1.25, 0.6);
+  if (grey < kPainted) box.tint = tint(1.25, 0.6);  // wood
   return box;
 }
 

@@ -105,7 +105,7 @@ TEST_F(LandmarkEyeTest, WritesACellForEachOfItsColumns) {
 }
 
 TEST(Eyes, AreFoundByTheirNames) {
-  EXPECT_THAT(names_of(eyes()), ElementsAre("landmark", "field", "ceiling"));
+  EXPECT_THAT(names_of(eyes()), ElementsAre("landmark", "field", "ceiling", "stereo"));
   const LandmarkMap none;
   for (const EyeEntry& entry : eyes()) EXPECT_EQ(entry.make({none})->name(), entry.name);
 }
