@@ -26,7 +26,9 @@ constexpr int kSearchPoints = 300;  // that it goes by
 constexpr int kSmall = 4;           // a picture is so many times smaller for the widest search
 constexpr int kFarTurns = 3;        // to either side
 constexpr double kFarTurn = from_deg(4.0);
-constexpr double kAlike = 0.95;  // correlation of pictures that nobody need doubt
+constexpr double kFaintCorrelation = 0.5;
+constexpr double kFaintResidual = 2.0;  // grey levels, of smoothed pictures
+constexpr double kAlike = 0.95;         // correlation of pictures that nobody need doubt
 constexpr double kSaturated = 250.0;
 constexpr double kMaxGain = 2.0;  // of the light from one picture to the other, either way
 
@@ -137,6 +139,7 @@ class PlaneFlow::State {
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();
     double agreement = 0.0;
     double correlation = 0.0;  ///< of the greys of the two pictures
+    double scale = 0.0;        ///< robust σ of the residuals, grey levels
     double overlap = 0.0;
     bool converged = false;
   };
@@ -165,11 +168,13 @@ class PlaneFlow::State {
   }
 
   /// That most points fit by the residuals' own scale says nothing where the light's gain has gone
-  /// to zero: the pictures must be alike.
+  /// to zero: the pictures must be alike, or where they show so little that noise counts, differ by
+  /// hardly more than noise.
   bool agrees(const Match& match) const {
-    return match.converged && match.agreement >= params_.min_agreement &&
-           match.correlation >= params_.min_correlation && match.state.gain < kMaxGain &&
-           match.state.gain > 1.0 / kMaxGain;
+    const bool alike = match.correlation >= params_.min_correlation ||
+                       (match.correlation >= kFaintCorrelation && match.scale <= kFaintResidual);
+    return match.converged && match.agreement >= params_.min_agreement && alike &&
+           match.state.gain < kMaxGain && match.state.gain > 1.0 / kMaxGain;
   }
 
   FlowState predicted() const {
@@ -235,6 +240,7 @@ class PlaneFlow::State {
       if (sums.seen < params_.min_points / 2) return match;
       match.agreement = static_cast<double>(sums.fitting) / sums.seen;
       match.correlation = sums.correlation;
+      match.scale = sums.scale;
       scale = std::clamp(sums.scale, 1.5, 40.0);
       const Eigen::LDLT<FlowNormal> solver(sums.normal);
       const FlowVector step = solver.solve(sums.gradient);

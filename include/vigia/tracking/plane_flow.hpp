@@ -13,8 +13,8 @@ namespace vigia::tracking {
 
 struct PlaneFlowParams {
   int block_px = 8;        ///< of each block the pixel of the greatest slope, if it has any, counts
-  double min_slope = 6.0;  ///< grey levels a pixel, after smoothing
-  int min_points = 60;
+  double min_slope = 4.0;  ///< grey levels a pixel, after smoothing
+  int min_points = 40;
   double min_overlap = 0.6;    ///< share of a key frame's points still in sight; below, a new one
   double min_agreement = 0.5;  ///< share of the points that fit
   double min_correlation = 0.85;  ///< of the two pictures' grey values at the points
