@@ -28,7 +28,7 @@ constexpr int kFarTurns = 3;        // to either side
 constexpr double kFarTurn = from_deg(4.0);
 constexpr double kFaintCorrelation = 0.5;
 constexpr double kFaintResidual = 2.0;  // grey levels, of smoothed pictures
-constexpr double kAlike = 0.95;         // correlation of pictures that nobody need doubt
+constexpr double kPlainlyAlike = 0.95;  // correlation of pictures that nobody need doubt
 constexpr double kSaturated = 250.0;
 constexpr double kMaxGain = 2.0;  // of the light from one picture to the other, either way
 
@@ -160,7 +160,7 @@ class PlaneFlow::State {
   Match best_match(const cv::Mat& grey, const cv::Mat& smooth) const {
     Match best = align(smooth, predicted(), &KeyPoint::grey);
     for (const auto search : {&State::found_again, &State::found_far}) {
-      if (agrees(best) && best.correlation >= kAlike) return best;
+      if (agrees(best) && best.correlation >= kPlainlyAlike) return best;
       const Match other = align(smooth, (this->*search)(grey), &KeyPoint::grey);
       if (!agrees(best) || (agrees(other) && other.correlation > best.correlation)) best = other;
     }

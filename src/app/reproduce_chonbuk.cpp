@@ -30,7 +30,7 @@ constexpr int kLines = 30;
 constexpr int kFlowLines = 6;
 constexpr double kSpeed_mps = 0.1;
 constexpr double kPeriod_s = 0.04;
-constexpr double kToCm = 100.0;
+constexpr double kCmPerMetre = 100.0;
 const double kLine_m = std::hypot(5.0, 2.5);
 
 struct ChonbukRun {
@@ -108,11 +108,12 @@ void add_position_rows(const ChonbukRun& run, const std::string& name,
                        const CeilingErrorSummary& published, const CeilingErrorSummary& best,
                        std::optional<double> printed_cm, std::optional<double> printed_deg) {
   const int n = best.frames;
-  run.add(name + ": position, mean", "cm", {}, kToCm * published.mean_m, kToCm * best.mean_m,
-          kToCm * best.bound_mean_m, n);
-  run.add(name + ": position, p95", "cm", {}, kToCm * published.p95_m, kToCm * best.p95_m, {}, n);
-  run.add(name + ": position, greatest", "cm", printed_cm, kToCm * published.max_m,
-          kToCm * best.max_m, {}, n);
+  run.add(name + ": position, mean", "cm", {}, kCmPerMetre * published.mean_m,
+          kCmPerMetre * best.mean_m, kCmPerMetre * best.bound_mean_m, n);
+  run.add(name + ": position, p95", "cm", {}, kCmPerMetre * published.p95_m,
+          kCmPerMetre * best.p95_m, {}, n);
+  run.add(name + ": position, greatest", "cm", printed_cm, kCmPerMetre * published.max_m,
+          kCmPerMetre * best.max_m, {}, n);
   run.add(name + ": heading, mean", "°", {}, to_deg(published.heading_mean),
           to_deg(best.heading_mean), to_deg(best.bound_heading), n);
   run.add(name + ": heading, p95", "°", {}, to_deg(published.heading_p95), to_deg(best.heading_p95),
@@ -135,7 +136,8 @@ void draw_errors(const ChonbukRun& run, const std::string& file, const std::stri
     for (std::size_t i = 0; i < estimates->size(); ++i)
       curve.points.emplace_back(
           static_cast<double>(i),
-          kToCm * difference((*estimates)[i].estimate, (*estimates)[i].truth).head<2>().norm());
+          kCmPerMetre *
+              difference((*estimates)[i].estimate, (*estimates)[i].truth).head<2>().norm());
     chart.curves.push_back(curve);
   }
   report::write_curve_chart(run.options.out / file, chart);
@@ -187,9 +189,9 @@ void study_positions(const ChonbukRun& run) {
                     best, 5.0, 4.0);
   const CeilingErrorSummary after = summarise_errors(calibrated);
   run.add("the same, tilt and height calibrated from the patches: position, mean", "cm", {},
-          kToCm * after.mean_m, {}, {}, after.frames);
+          kCmPerMetre * after.mean_m, {}, {}, after.frames);
   run.add("the same, tilt and height calibrated from the patches: position, p95", "cm", {},
-          kToCm * after.p95_m, {}, {}, after.frames);
+          kCmPerMetre * after.p95_m, {}, {}, after.frames);
 }
 
 double end_error_m(const std::vector<CeilingEstimate>& estimates) {
@@ -302,10 +304,10 @@ void study_pipes(const ChonbukRun& run) {
   run.add(name + ", flow alone: error at the end, greatest", "% of the path", {}, {}, worst, {},
           lines);
   const CeilingErrorSummary summary = summarise_errors(filtered);
-  run.add(name + ", filter with flow: position, mean", "cm", {}, {}, kToCm * summary.mean_m,
-          kToCm * summary.bound_mean_m, summary.frames);
-  run.add(name + ", filter with flow: position, greatest", "cm", {}, {}, kToCm * summary.max_m, {},
-          summary.frames);
+  run.add(name + ", filter with flow: position, mean", "cm", {}, {}, kCmPerMetre * summary.mean_m,
+          kCmPerMetre * summary.bound_mean_m, summary.frames);
+  run.add(name + ", filter with flow: position, greatest", "cm", {}, {},
+          kCmPerMetre * summary.max_m, {}, summary.frames);
 }
 
 /// What a fusion makes of bursts: frames in which it is off by more than 10 cm two seconds after.
@@ -363,18 +365,18 @@ void study_fusion(const ChonbukRun& run, const std::vector<CeilingDrive>& drives
   }
   const auto lines = static_cast<double>(drives.size());
   for (std::size_t k = 0; k < thresholds.size(); ++k) {
-    const std::string row = fmt::format("{}, Th {:g} cm", what, kToCm * thresholds[k]);
+    const std::string row = fmt::format("{}, Th {:g} cm", what, kCmPerMetre * thresholds[k]);
     run.add(row + ": lock lost", "% of bursts", {},
             100.0 * published[k].lost / std::max(1, published[k].bursts), {}, {},
             published[k].bursts);
-    run.add(row + ": position, mean", "cm", {}, kToCm * published[k].mean_m / lines, {}, {},
+    run.add(row + ": position, mean", "cm", {}, kCmPerMetre * published[k].mean_m / lines, {}, {},
             published[k].bursts);
   }
   run.add(what + ", filter: lock lost", "% of bursts", {}, {},
           100.0 * best.lost / std::max(1, best.bursts), {}, best.bursts);
   run.add(what + ", filter: lost and not flagged", "bursts", {}, {}, best.unflagged, {},
           best.bursts);
-  run.add(what + ", filter: position, mean", "cm", {}, {}, kToCm * best.mean_m / lines, {},
+  run.add(what + ", filter: position, mean", "cm", {}, {}, kCmPerMetre * best.mean_m / lines, {},
           best.bursts);
 }
 
@@ -433,7 +435,7 @@ void add_outage_rows(const ChonbukRun& run, const std::string& name, const Outag
   run.add(known + "recovered", "%", {}, {}, 100.0 * tally.recovered / tally.known, {}, tally.known);
   run.add(known + "time until then, mean", "s", {}, {},
           tally.recovery_s / std::max(1, tally.recovered), {}, tally.recovered);
-  run.add(known + "greatest error at the end", "cm", {}, {}, kToCm * tally.error_m, {},
+  run.add(known + "greatest error at the end", "cm", {}, {}, kCmPerMetre * tally.error_m, {},
           tally.known);
 }
 
@@ -487,7 +489,7 @@ void study_kidnappings(const ChonbukRun& run) {
   run.add("kidnapped: flagged after two seconds", "%", {}, {}, 100.0 * flagged / count, {}, count);
   run.add("kidnapped: frames until it is flagged, greatest", "frames", {}, {}, unsaid, {}, count);
   run.add("kidnapped: error within the cell after two seconds, greatest", "cm", {}, {},
-          kToCm * in_cell, {}, count);
+          kCmPerMetre * in_cell, {}, count);
   run.add("kidnapped: heading after two seconds, greatest error", "°", {}, {}, to_deg(heading), {},
           count);
 }

@@ -20,7 +20,7 @@ constexpr int kMaxSteps = 20;
 /// leave the field to a wrong one, and two discs in one look share an error that counts twice here.
 constexpr double kImpossible = 1e-6;
 /// ln of a weight beside the best that no longer matters.
-constexpr double kNegligible = -14.0;
+constexpr double kNegligiblePlace = -14.0;
 /// By so many sightings may the support of a rough pose fall short of what the fitted one explains.
 constexpr int kSupportSlack = 1;
 /// σ of a closed-form pose, as far as the density of a place is concerned.
@@ -183,7 +183,7 @@ bool Relocalizer::may_weigh(double unexplained_cost, const Pose2& pose, const Ta
   rough.pose = pose;
   rough.covariance = kRoughSigma.cwiseAbs2().asDiagonal();
   const double density = std::max(0.0, std::log(relative_density(rough, task.place)));
-  return density - unexplained_cost > best->log_weight + kNegligible;
+  return density - unexplained_cost > best->log_weight + kNegligiblePlace;
 }
 
 double Relocalizer::cost_of(const Clue& clue) const {
