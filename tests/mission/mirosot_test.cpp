@@ -40,7 +40,7 @@ TEST(MirosotMission, TheRobotKnowsItsPlaceByTheGoalsCorners) {
 
 TEST(MirosotMission, CalibrationErrorsThatTheRobotDoesNotKnowOfCostIt) {
   evaluation::DriveScorer scorer;
-  run_mission(load_mission(kMirosot, {"timeout_s=15", "noise.stereo={}",
+  run_mission(load_mission(kMirosot, {"timeout_s=15", "localization.noise.stereo={}",
                                       "disturbances.stereo={baseline: 0.1}"}),
               1, {&scorer});
   EXPECT_GT(scorer.score().localizers.at("ml_fix").nees_mean, 6.0);
