@@ -107,9 +107,11 @@ UpdateResult RunningFixLocalizer::update(const Observation& observation) {
   }
   const double way = first->second.since.displacement_m.norm();
   if (way < params_.min_way_m) return {UpdateStatus::degenerate, std::nullopt, 0.0, 0};
-  result = fix({*place, Eigen::Matrix2d::Zero()}, first->second, now);
-  if (result.status != UpdateStatus::degenerate || way > params_.max_way_m)
-    first->second = {now, {}};
+  // By value: a fix that loses the robot forgets the first sightings, this one among them.
+  const First from = first->second;
+  result = fix({*place, Eigen::Matrix2d::Zero()}, from, now);
+  const bool used = result.status != UpdateStatus::degenerate || way > params_.max_way_m;
+  if (used && !firsts_.empty()) firsts_[key] = {now, {}};
   refresh_belief();
   return result;
 }
