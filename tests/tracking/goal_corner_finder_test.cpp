@@ -138,7 +138,10 @@ TEST(GoalCornerFinder, FindsTheCornersOfRenderedGoalsInBothImages) {
   const GoalScene scene;
   const CornerTally tally = tally_views(scene, 11, 24);
   report("QVGA", tally);
-  EXPECT_GT(tally.shown, 0);
+  EXPECT_EQ(tally.shown, 9);
+  EXPECT_EQ(tally.matched, tally.shown);
+  EXPECT_EQ(tally.false_ones, 0);
+  EXPECT_LT(tally.worst, 0.15);
 }
 
 }  // namespace
