@@ -24,6 +24,7 @@ constexpr int kIterations = 5;
 constexpr int kSingle = 16;  // frames with one patch, which may be none, for one with more
 constexpr double kUnseenMotions[] = {4.0, 16.0, 64.0};  // variances of a tick
 constexpr double kCalming = 0.9;                        // a tick
+constexpr double kLoneDoubt = 0.1;  // that a lone patch which fits a wide prediction is none
 constexpr double kFlowSlack_m = 0.01;
 constexpr double kTiltedFlow = 0.3;  // how far from the middle the texture's may be, in distances
 constexpr double kAtRest = 1e-7;
@@ -62,6 +63,7 @@ void CeilingFilter::reset(Stamp stamp, const Prior& prior) {
   gated_ = 0;
   unknown_s_ = 0.0;
   lively_Q_.setZero();
+  lone_.reset();
   refresh_belief();
 }
 
@@ -450,6 +452,7 @@ void CeilingFilter::shift_by(CeilingCell shift) {
   std::set<CeilingCell> judged;
   for (const CeilingCell& cell : judged_) judged.insert({cell.i + shift.i, cell.j + shift.j});
   judged_ = std::move(judged);
+  if (lone_) lone_ = CeilingCell{lone_->i + shift.i, lone_->j + shift.j};
 }
 
 /// Kalman's; the camera's errors are considered and not updated (Schmidt 1966) where patches may be
@@ -490,6 +493,18 @@ void CeilingFilter::fuse(const Linearised& all) {
   P_ = 0.5 * (P + P.transpose());
 }
 
+/// Any patch fits a wide prediction, also one that is none of the grid's: until another bears the
+/// fix out it is not believed alone. Called with what a frame is about to teach.
+void CeilingFilter::note_lone_patch(const std::vector<Seen>& passed) {
+  const CeilingCell& cell = passed.front().cell;
+  if (passed.size() > 1)
+    lone_.reset();
+  else if (wide())
+    lone_ = cell;
+  else if (lone_ && *lone_ != cell)
+    lone_.reset();
+}
+
 CeilingUpdate CeilingFilter::update(const std::vector<PatchImage>& patches) {
   std::vector<Seen> seen = see(patches);
   if (seen.empty()) return CeilingUpdate::none_seen;
@@ -505,6 +520,7 @@ CeilingUpdate CeilingFilter::update(const std::vector<PatchImage>& patches) {
     return CeilingUpdate::gated;
   }
   gated_ = 0;
+  note_lone_patch(passed);
   const Eigen::VectorXd at = converged(passed, start);
   const Linearised all = linearise(passed, at);
   weigh_shifts(all, seen, Pose2::from_vector(at.head<3>()));
@@ -544,8 +560,9 @@ void CeilingFilter::refresh_belief() {
   belief_.covariance = P_.topLeftCorner<3, 3>();
   belief_.hypotheses.clear();
   const double best = shifts_[CeilingCell{}];
-  belief_.status = best < params_.sure || open() ? BeliefStatus::ambiguous : BeliefStatus::tracking;
-  belief_.lost_probability = 1.0 - best;
+  const bool unsure = best < params_.sure || open() || lone_;
+  belief_.status = unsure ? BeliefStatus::ambiguous : BeliefStatus::tracking;
+  belief_.lost_probability = std::max(1.0 - best, lone_ ? kLoneDoubt : 0.0);
   if (belief_.status == BeliefStatus::tracking) return;
   for (const auto& [shift, weight] : shifts_) {
     const Eigen::Vector2d p = belief_.pose.position() + cell_centre(grid_, shift);

@@ -241,6 +241,31 @@ TEST(CeilingFilter, ATurnUnderATiltIsNoShift) {
   EXPECT_LT((m2 - Eigen::Rotation2Dd(-kTurn) * (m1 - seen.shift)).norm(), 1e-4);
 }
 
+TEST(CeilingFilter, ALonePatchAfterAWidePredictionIsNotBelievedBeforeAnotherAgrees) {
+  CeilingFilterParams params;
+  params.max_speed_mps = 1.2;
+  CeilingFilter filter(up_camera(), {}, params);
+  const Pose2 robot{0.2, 0.1, 0.4};
+  const auto begin = [&] {
+    filter.reset({}, near(robot, 0.002, 0.002));
+    filter.predict_unknown(Stamp::from_seconds(0.3));
+  };
+  // One that is none of the grid's, turned by a right angle.
+  begin();
+  const PatchImage spurious = image_of(up_camera(), {}, robot, {0.25, 0.2, 0.5 * kPi});
+  ASSERT_EQ(filter.update({spurious}), CeilingUpdate::fused);
+  EXPECT_GT(std::abs(filter.belief().pose.theta - robot.theta), 1.0);
+  EXPECT_EQ(filter.belief().status, BeliefStatus::ambiguous);
+  // One of the grid's, and then two.
+  begin();
+  const auto images = images_about(up_camera(), {}, robot);
+  ASSERT_GT(images.size(), 1U);
+  ASSERT_EQ(filter.update({images.front()}), CeilingUpdate::fused);
+  EXPECT_EQ(filter.belief().status, BeliefStatus::ambiguous);
+  filter.update(images);
+  EXPECT_EQ(filter.belief().status, BeliefStatus::tracking);
+}
+
 TEST(CeilingFilter, OnePatchTooManyIsNoKidnapping) {
   CeilingFilter filter(up_camera(), {}, {});
   const Pose2 robot{0.2, 0.1, 0.4};

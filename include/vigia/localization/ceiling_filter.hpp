@@ -108,6 +108,7 @@ class CeilingFilter {
   Linearised linearise(const std::vector<Seen>& seen, const Eigen::VectorXd& at) const;
   std::vector<Seen> gated(const std::vector<Seen>& seen, const Linearised& all) const;
   std::vector<Seen> passed_gate(const std::vector<Seen>& seen, const Pose2& start);
+  void note_lone_patch(const std::vector<Seen>& passed);
   Eigen::MatrixXd gain(const Linearised& all) const;
   Eigen::VectorXd fused_state(const Linearised& all) const;
   Eigen::VectorXd converged(const std::vector<Seen>& seen, const Pose2& start) const;
@@ -137,7 +138,9 @@ class CeilingFilter {
   Shifts shifts_;
   std::set<CeilingCell> judged_;  ///< cells in view whose presence or absence was weighed
   bool cells_unsure_ = false;  ///< whether the patches before were perhaps the same in other cells
-  int gated_ = 0;              ///< frames in a row, weighed
+  /// Of the patch that alone ended a wide prediction, until another agrees.
+  std::optional<CeilingCell> lone_;
+  int gated_ = 0;  ///< frames in a row, weighed
   /// Of the motion in a tick lately, at most; world frame.
   Eigen::Matrix3d lively_Q_ = Eigen::Matrix3d::Zero();
   double unknown_s_ = 0.0;  ///< for how long nothing was known of the motion
