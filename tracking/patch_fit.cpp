@@ -17,7 +17,9 @@ using FitNormal = Eigen::Matrix<double, kFitUnknowns, kFitUnknowns>;
 using FitVector = Eigen::Matrix<double, kFitUnknowns, 1>;
 
 constexpr int kFitSteps = 12;
-constexpr double kFitBand_px = 3.5;  // beside the patch that is fitted with it
+constexpr double kCorrelationSigmas = 1.5;   // of neighbours by chance
+constexpr std::size_t kCorrelationLags = 8;  // px
+constexpr double kFitBand_px = 3.5;          // beside the patch that is fitted with it
 constexpr double kBlurSigma_px = 0.3;
 
 /// The patch's share of a pixel and its derivatives by the pixel's place in the patch's frame (x
@@ -180,6 +182,44 @@ PatchSums sum_up(const std::vector<BandPixel>& pixels, const PatchShape& shape,
   return sums;
 }
 
+/// By how much more the fit's variance is than that of white noise of the same size: what the
+/// surroundings have of texture, neighbours share. The residuals' correlation along rows, as far as
+/// it is more than chance; taken for alike along columns.
+double correlation_factor(const std::vector<BandPixel>& pixels, const PatchShape& shape,
+                          const PatchFinderParams& params) {
+  const PatchOutline outline(params, shape.log_scale);
+  const auto c = static_cast<float>(std::cos(shape.angle));
+  const auto s = static_cast<float>(std::sin(shape.angle));
+  const float per_blur = 1.0F / static_cast<float>(shape.blur);
+  std::vector<float> residuals;
+  residuals.reserve(pixels.size());
+  double square = 0.0;
+  for (const BandPixel& pixel : pixels) {
+    const float du = pixel.u - static_cast<float>(shape.uv.x());
+    const float dv = pixel.v - static_cast<float>(shape.uv.y());
+    const float share = outline.share(c * du + s * dv, c * dv - s * du, per_blur).value;
+    residuals.push_back(pixel.grey - static_cast<float>(shape.ground) -
+                        static_cast<float>(shape.patch - shape.ground) * share);
+    square += static_cast<double>(residuals.back() * residuals.back());
+  }
+  square /= static_cast<double>(pixels.size());
+  double sum = 1.0;
+  for (std::size_t lag = 1; lag <= kCorrelationLags; ++lag) {
+    double products = 0.0;
+    int pairs = 0;
+    for (std::size_t i = lag; i < pixels.size(); ++i) {
+      if (pixels[i].v != pixels[i - lag].v) continue;
+      products += static_cast<double>(residuals[i] * residuals[i - lag]);
+      ++pairs;
+    }
+    if (pairs < kFitUnknowns) break;
+    const double correlation = products / (pairs * square);
+    if (correlation < kCorrelationSigmas / std::sqrt(static_cast<double>(pairs))) break;
+    sum += 2.0 * correlation;
+  }
+  return sum * sum;
+}
+
 PatchShape stepped(const PatchShape& shape, const FitVector& step) {
   PatchShape next = shape;
   next.uv += step.head<2>().cwiseMax(-2.0).cwiseMin(2.0);
@@ -213,6 +253,7 @@ std::optional<PatchFit> fit_patch(const PatchWindow& window, const PatchShape& s
         (fit.noise * fit.noise) * solver.solve(FitNormal::Identity()).topLeftCorner<3, 3>();
     fit.shape = stepped(fit.shape, step);
     if (i > 3 && step.head<2>().norm() < 1e-3 && std::abs(step[2]) < 1e-4) {
+      fit.covariance *= correlation_factor(pixels, fit.shape, params);
       fit.shape.angle = wrap_angle(fit.shape.angle);
       return fit;
     }
