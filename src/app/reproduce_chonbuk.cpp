@@ -196,6 +196,54 @@ void study_positions(const ChonbukRun& run) {
           kCmPerMetre * after.p95_m, {}, {}, after.frames);
 }
 
+/// Tilts and distance as drawn from what the filter is told of them: about either axis, relative.
+CeilingSetting drawn_mounting(std::uint64_t seed, double tilt_sigma, double height_sigma) {
+  CeilingSetting setting = ideal(seed);
+  RandomStream random(seed, "mounting");
+  const Eigen::Vector2d tilt(tilt_sigma * random.normal(), tilt_sigma * random.normal());
+  setting.tilt = tilt.norm();
+  setting.tilt_axis = std::atan2(tilt.y(), tilt.x());
+  setting.height_error = height_sigma * random.normal();
+  setting.ceiling.grid.placement_m = 0.005;
+  setting.ceiling.grid.placement_turn = from_deg(1.3);
+  return setting;
+}
+
+/// The filter beside its posterior bound where what is constant is drawn anew for each drive.
+void study_mountings(const ChonbukRun& run, double tilt_sigma, double height_sigma) {
+  constexpr int kMountings = 100;
+  constexpr std::uint64_t kMountingSeed = 3000;
+  const double step = kLine_m / kPositions;
+  std::vector<CeilingDrive> drives;
+  for (int i = 0; i < run.lines(kMountings); ++i) {
+    const std::uint64_t seed = kMountingSeed + static_cast<std::uint64_t>(i);
+    drives.push_back({drawn_mounting(seed, tilt_sigma, height_sigma), line_of(seed, step)});
+  }
+  const auto frames = evaluation::read_ceiling_drives(drives, {}, run.options.threads);
+  localization::CeilingFilterParams params;
+  params.tilt_sigma = tilt_sigma;
+  params.height_sigma = height_sigma;
+  std::vector<CeilingEstimate> all;
+  std::vector<std::vector<double>> nees(drives.size());
+  for (std::size_t i = 0; i < drives.size(); ++i) {
+    const auto drive = follow_jointly(drives[i].setting, params, frames[i], CeilingMotion::unknown,
+                                      step / kSpeed_mps);
+    for (const CeilingEstimate& one : drive)
+      nees[i].push_back(evaluation::nees({one.truth, one.estimate, *one.covariance}));
+    append(all, drive);
+  }
+  const CeilingErrorSummary summary = summarise_errors(all);
+  const std::string name = fmt::format("mounting drawn, {:.1f}° about either axis, {:.1f} % height",
+                                       to_deg(tilt_sigma), 100.0 * height_sigma);
+  const int n = static_cast<int>(drives.size());
+  run.add(name + ": position, rms", "cm", {}, {}, kCmPerMetre * summary.rms_m,
+          kCmPerMetre * summary.bound_m, n);
+  run.add(name + ": position, greatest", "cm", {}, {}, kCmPerMetre * summary.max_m, {}, n);
+  run.add(name + ": NEES a degree of freedom", "1", {}, {}, summary.nees, 1.0, n);
+  run.add(name + ": instants with ANEES in its 95 % band", "%", {}, {},
+          100.0 * evaluation::anees(nees, 3).inside_band, {}, n);
+}
+
 double end_error_m(const std::vector<CeilingEstimate>& estimates) {
   return difference(estimates.back().estimate, estimates.back().truth).head<2>().norm();
 }
@@ -576,6 +624,8 @@ evaluation::PaperTable reproduce_chonbuk(const PaperOptions& options) {
                  {"period_s", kPeriod_s}};
   study_positions(run);
   const auto drives = drives_of(&ideal, run.lines(kFlowLines), kSpeed_mps * kPeriod_s);
+  study_mountings(run, from_deg(0.2), 0.005);
+  study_mountings(run, from_deg(0.7), 0.02);
   const auto frames = study_flow(run, drives);
   study_turn(run);
   study_pipes(run);
