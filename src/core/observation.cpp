@@ -42,25 +42,31 @@ ImageExtent extent_of(const PointsObservation& seen, const Landmark* landmark) {
 
 }  // namespace
 
+std::optional<LandmarkImage> landmark_image(const Observation& observation) {
+  using Image = std::optional<LandmarkImage>;
+  return std::visit(Overloaded{[](const EllipseObservation& seen) { return Image(&seen); },
+                               [](const PointsObservation& seen) { return Image(&seen); },
+                               [](const FieldObservation&) { return Image(); },
+                               [](const PatchesObservation&) { return Image(); },
+                               [](const StereoObservation&) { return Image(); },
+                               [](const FlowObservation&) { return Image(); }},
+                    observation);
+}
+
 ImageExtent image_extent(const Observation& observation, const Landmark* landmark) {
+  const auto image = landmark_image(observation);
+  if (!image) return {};
   return std::visit(
-      Overloaded{[](const EllipseObservation& seen) {
-                   return ImageExtent{{seen.ellipse.u, seen.ellipse.v}, seen.ellipse.a};
+      Overloaded{[](const EllipseObservation* seen) {
+                   const Ellipse& ellipse = seen->ellipse;
+                   return ImageExtent{{ellipse.u, ellipse.v}, ellipse.a};
                  },
-                 [&](const PointsObservation& seen) { return extent_of(seen, landmark); },
-                 [](const FieldObservation&) { return ImageExtent{}; },
-                 [](const PatchesObservation&) { return ImageExtent{}; },
-                 [](const StereoObservation&) { return ImageExtent{}; }},
-      observation);
+                 [&](const PointsObservation* seen) { return extent_of(*seen, landmark); }},
+      *image);
 }
 
 bool shows_landmark(const Observation& observation) {
-  return std::visit(Overloaded{[](const EllipseObservation&) { return true; },
-                               [](const PointsObservation&) { return true; },
-                               [](const FieldObservation&) { return false; },
-                               [](const PatchesObservation&) { return false; },
-                               [](const StereoObservation&) { return false; }},
-                    observation);
+  return landmark_image(observation).has_value();
 }
 
 const Shot& shot_of(const Observation& observation) {

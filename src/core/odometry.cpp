@@ -5,6 +5,7 @@
 namespace vigia {
 
 Eigen::Matrix3d control_covariance(const OdometryIncrement& u, const OdometryNoise& noise) {
+  if (u.covariance) return *u.covariance;
   const double distance = std::abs(u.trans);
   const double turned = std::abs(u.rot1 - u.crab) + std::abs(u.rot2 + u.crab);
   const double rotation = noise.rot_per_sqrt_m * noise.rot_per_sqrt_m * distance +

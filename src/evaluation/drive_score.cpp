@@ -17,10 +17,12 @@ Eigen::Matrix3d covariance_of_anywhere(const FloorPlan& plan) {
   return variances.asDiagonal();
 }
 
-std::optional<EstimatorSetup::Ceiling> ceiling_of(const mission::MissionSetup& setup) {
+std::optional<EstimatorSetup::Ceiling> ceiling_of(const mission::MissionSetup& setup,
+                                                  const std::string& localizer) {
   const auto camera = mission::ceiling_camera(setup);
   if (!camera) return std::nullopt;
-  return EstimatorSetup::Ceiling{*camera, *setup.world.ceiling};
+  return EstimatorSetup::Ceiling{*camera, *setup.world.ceiling, setup.ceiling,
+                                 mission::moved_by_flow(setup, localizer)};
 }
 
 /// With the errors of calibration that the simulator truly draws.
@@ -34,7 +36,7 @@ std::optional<localization::CornerFilterParams> corners_of(const mission::Missio
   return params;
 }
 
-EstimatorSetup estimator_setup(const mission::MissionSetup& setup) {
+EstimatorSetup estimator_setup(const mission::MissionSetup& setup, const std::string& localizer) {
   return {setup.world.landmarks,
           setup.on_ground(),
           setup.robot.robot.odometry,
@@ -42,7 +44,7 @@ EstimatorSetup estimator_setup(const mission::MissionSetup& setup) {
           setup.prior ? setup.prior->covariance : covariance_of_anywhere(setup.world.plan),
           setup.prior.has_value(),
           setup.world.field,
-          ceiling_of(setup),
+          ceiling_of(setup, localizer),
           corners_of(setup)};
 }
 
@@ -75,7 +77,9 @@ void DriveScorer::on_start(const mission::MissionStart& start) {
   impl_->score.mission = setup.name;
   impl_->score.seed = start.seed;
   impl_->score.primary = setup.primary;
-  impl_->localizers.assign(setup.localizers.size(), EstimatorScorer(estimator_setup(setup)));
+  impl_->localizers.clear();
+  for (const std::string& name : setup.localizers)
+    impl_->localizers.emplace_back(estimator_setup(setup, name));
   impl_->last_zoom_mm = setup.robot.initial_zoom_mm;
 }
 

@@ -1,7 +1,6 @@
 #include "vigia/evaluation/estimator_score.hpp"
 
 #include "lost_episodes.hpp"
-#include "true_association.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -30,23 +29,7 @@ int& count_of(LocalizerScore& score, localization::UpdateStatus status) {
 
 }  // namespace
 
-EstimatorScorer::EstimatorScorer(EstimatorSetup setup)
-    : setup_(std::move(setup)), bound_(setup_.prior_covariance, setup_.on_ground, setup_.sensor) {
-  if (setup_.field) field_.emplace(*setup_.field);
-  if (setup_.corners && setup_.field) {
-    localization::CornerFilterParams exact = *setup_.corners;
-    exact.odometry = setup_.odometry;
-    exact.gate = 1e12;  // of a corner its covariance counts, not where it is
-    exact.iterations = 1;
-    corners_.emplace(*setup_.field, exact);
-    corners_->reset({}, {{}, setup_.prior_covariance});
-  }
-  if (!setup_.ceiling) return;
-  localization::CeilingFilterParams params;
-  params.odometry = setup_.odometry;
-  ceiling_.emplace(setup_.ceiling->camera, setup_.ceiling->grid, params);
-  ceiling_->reset({}, {{}, setup_.prior_covariance});
-}
+EstimatorScorer::EstimatorScorer(EstimatorSetup setup) : setup_(std::move(setup)), bound_(setup_) {}
 
 void EstimatorScorer::add(const mission::EstimatorTick& tick, std::size_t localizer) {
   const Belief& belief = *tick.localizers[localizer].belief;
@@ -55,15 +38,7 @@ void EstimatorScorer::add(const mission::EstimatorTick& tick, std::size_t locali
     const double turned = wrap_angle(truth.pose.theta - truth.pose_before.theta);
     const auto u = chord_increment(truth.pose_before, truth.pose, turned, tick.odometry.from,
                                    tick.odometry.to);
-    bound_.predict(truth.pose_before, u, control_covariance(u, setup_.odometry));
-    if (ceiling_) {
-      ceiling_->place({truth.pose_before, {}, {}});
-      ceiling_->predict(u);
-    }
-    if (corners_) {
-      corners_->relinearise(truth.pose_before);
-      corners_->predict(u);
-    }
+    bound_.move(truth.pose_before, u);
   }
   const auto fused = count_updates(tick, localizer);
   if (belief.status == BeliefStatus::lost)
@@ -77,35 +52,14 @@ std::optional<LookId> EstimatorScorer::count_updates(const mission::EstimatorTic
   const auto& updates = tick.localizers[localizer].updates;
   std::optional<LookId> look;
   for (std::size_t k = 0; k < updates.size(); ++k) {
-    ++count_of(score_, updates[k].status);
+    const Observation& observation = tick.observations[k];
+    const bool motion = std::holds_alternative<FlowObservation>(observation);
+    if (!motion) ++count_of(score_, updates[k].status);
     if (updates[k].status != localization::UpdateStatus::fused) continue;
-    if (tick.truth) bound_by(tick.observations[k], tick.truth->exposures[k]);
-    look = shot_of(tick.observations[k]).look;
+    if (tick.truth) bound_.learn(observation, tick.truth->exposures[k]);
+    if (!motion) look = shot_of(observation).look;
   }
   return look;
-}
-
-/// What the image taught at best, whatever the localizer took it for.
-void EstimatorScorer::bound_by(const Observation& observation,
-                               const mission::ExposureTruth& truth) {
-  if (const auto* seen = std::get_if<FieldObservation>(&observation); seen && field_) {
-    // Of the points as they truly lie: on the map's lines or by chance.
-    bound_.update(
-        field_->linearise(seen->scan.points, truth.pose, field_->params().clutter).complete);
-    return;
-  }
-  if (const auto* seen = std::get_if<PatchesObservation>(&observation); seen && ceiling_) {
-    ceiling_->inform({truth.pose, {}, {}}, seen->patches);
-    return;
-  }
-  if (const auto* seen = std::get_if<StereoObservation>(&observation); seen && corners_) {
-    corners_->relinearise(truth.pose);
-    corners_->update(seen->corners);
-    return;
-  }
-  const Landmark* landmark =
-      true_landmark(observation, setup_.landmarks, setup_.on_ground, truth.pose, truth.bias);
-  if (landmark != nullptr) bound_.update(truth.pose, truth.bias, *landmark, observation);
 }
 
 void EstimatorScorer::add_errors(const mission::EstimatorTick& tick, const Belief& belief,
@@ -141,13 +95,8 @@ void EstimatorScorer::add_errors(const mission::EstimatorTick& tick, const Belie
   looks.back() = {*fused, nees, squared, bound_m2};
 }
 
-Eigen::Matrix3d EstimatorScorer::bound_covariance() const {
-  if (corners_) return corners_->belief().covariance;
-  return ceiling_ ? ceiling_->belief().covariance : bound_.covariance();
-}
-
 double EstimatorScorer::bound_position_m2() const {
-  return bound_covariance().topLeftCorner<2, 2>().trace();
+  return bound_.covariance().topLeftCorner<2, 2>().trace();
 }
 
 LocalizerScore EstimatorScorer::score() const {
@@ -157,7 +106,7 @@ LocalizerScore EstimatorScorer::score() const {
   score.heading_rmse_rad = std::sqrt(sums_.squared_heading / n);
   score.nees_mean = sums_.nees / n;
   score.pcrlb_position_rms_m = std::sqrt(sums_.bound_trace / n);
-  const Eigen::Matrix3d bound = bound_covariance();
+  const Eigen::Matrix3d bound = bound_.covariance();
   score.pcrlb_position_final_m = mean_length(bound.topLeftCorner<2, 2>());
   score.pcrlb_heading_final_rad = std::sqrt(2.0 * bound(2, 2) / kPi);
   score.loss = losses_.score();

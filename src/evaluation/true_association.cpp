@@ -34,15 +34,14 @@ const Landmark* nearest_disc(const EllipseObservation& seen, const LandmarkMap& 
 const Landmark* true_landmark(const Observation& observation, const LandmarkMap& map,
                               const RigOnGround& on_ground, const Pose2& truth,
                               const localization::LookBias& bias) {
+  const auto image = landmark_image(observation);
+  if (!image) return nullptr;
   return std::visit(
-      Overloaded{[&](const EllipseObservation& seen) {
-                   return nearest_disc(seen, map, on_ground, truth, bias);
+      Overloaded{[&](const EllipseObservation* seen) {
+                   return nearest_disc(*seen, map, on_ground, truth, bias);
                  },
-                 [&](const PointsObservation& seen) { return map.find(seen.landmark); },
-                 [](const FieldObservation&) -> const Landmark* { return nullptr; },
-                 [](const PatchesObservation&) -> const Landmark* { return nullptr; },
-                 [](const StereoObservation&) -> const Landmark* { return nullptr; }},
-      observation);
+                 [&](const PointsObservation* seen) { return map.find(seen->landmark); }},
+      *image);
 }
 
 }  // namespace vigia::evaluation

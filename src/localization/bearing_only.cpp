@@ -83,13 +83,8 @@ std::vector<Pose2> resect(const std::array<Bearing, 3>& bearings) {
 
 /// The landmark of those that say who they are.
 std::optional<LandmarkId> named_landmark(const Observation& observation) {
-  return std::visit(
-      Overloaded{[](const EllipseObservation&) { return std::optional<LandmarkId>(); },
-                 [](const PointsObservation& seen) { return std::optional(seen.landmark); },
-                 [](const FieldObservation&) { return std::optional<LandmarkId>(); },
-                 [](const PatchesObservation&) { return std::optional<LandmarkId>(); },
-                 [](const StereoObservation&) { return std::optional<LandmarkId>(); }},
-      observation);
+  const auto* seen = std::get_if<PointsObservation>(&observation);
+  return seen == nullptr ? std::nullopt : std::optional(seen->landmark);
 }
 
 /// How far the middle of the landmark's image lies from the image of its centre, px, seen from wMc:
@@ -101,27 +96,26 @@ std::optional<Eigen::Vector2d> centre_shift(const Observation& observation,
   const Eigen::Isometry3d cMl = wMc.inverse() * landmark.wMl;
   const auto centre = project(shot.model, cMl.translation());
   if (!centre) return std::nullopt;
+  const auto seen_image = landmark_image(observation);
+  if (!seen_image) return std::nullopt;
   return std::visit(
-      Overloaded{[&](const EllipseObservation&) -> std::optional<Eigen::Vector2d> {
+      Overloaded{[&](const EllipseObservation*) -> std::optional<Eigen::Vector2d> {
                    const auto image = disc_image(landmark, pinhole(shot), wMc);
                    if (!image) return std::nullopt;
                    return Eigen::Vector2d(Eigen::Vector2d(image->u, image->v) - *centre);
                  },
-                 [&](const PointsObservation& seen) -> std::optional<Eigen::Vector2d> {
-                   PointsObservation predicted = seen;
+                 [&](const PointsObservation* seen) -> std::optional<Eigen::Vector2d> {
+                   PointsObservation predicted = *seen;
                    predicted.points.clear();
-                   for (const SeenPoint& point : seen_points(landmark, seen)) {
+                   for (const SeenPoint& point : seen_points(landmark, *seen)) {
                      const auto image = predict_point(point.point, pinhole(shot), cMl);
                      if (!image) return std::nullopt;
                      predicted.points.push_back(
                          {point.point.label, image->uv, Eigen::Matrix2d::Identity()});
                    }
                    return Eigen::Vector2d(image_extent(predicted).centre - *centre);
-                 },
-                 [](const FieldObservation&) { return std::optional<Eigen::Vector2d>(); },
-                 [](const PatchesObservation&) { return std::optional<Eigen::Vector2d>(); },
-                 [](const StereoObservation&) { return std::optional<Eigen::Vector2d>(); }},
-      observation);
+                 }},
+      *seen_image);
 }
 
 /// The horizontal direction of a pixel in the robot's frame at the exposure, rad.
@@ -267,13 +261,10 @@ std::optional<BearingOnlyLocalizer::Sightline> BearingOnlyLocalizer::sightline(
 }
 
 UpdateResult BearingOnlyLocalizer::update(const Observation& observation) {
-  if (!shows_landmark(observation)) return {};
+  const auto image = landmark_image(observation);
+  if (!image) return {};
   const Shot& shot = shot_of(observation);
-  const bool usable = std::visit(Overloaded{[](const FieldObservation&) { return false; },
-                                            [](const PatchesObservation&) { return false; },
-                                            [](const StereoObservation&) { return false; },
-                                            [](const auto& seen) { return is_usable(seen); }},
-                                 observation);
+  const bool usable = std::visit([](const auto* seen) { return is_usable(*seen); }, *image);
   if (!usable) return {UpdateStatus::degenerate, std::nullopt, 0.0, 0};
   if (shot.stamp < stamp_ - Duration::from_seconds(params_.history_s))
     return {UpdateStatus::too_late, std::nullopt, 0.0, 0};

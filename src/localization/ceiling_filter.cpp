@@ -9,6 +9,7 @@
 
 #include "vigia/core/angle.hpp"
 #include "vigia/core/plane_geometry.hpp"
+#include "vigia/localization/motion_fusion.hpp"
 
 namespace vigia::localization {
 namespace {
@@ -26,7 +27,6 @@ constexpr double kUnseenMotions[] = {4.0, 16.0, 64.0};  // variances of a tick
 constexpr double kCalming = 0.9;                        // a tick
 constexpr double kLoneDoubt = 0.1;  // that a lone patch which fits a wide prediction is none
 constexpr double kFlowSlack_m = 0.01;
-constexpr double kTiltedFlow = 0.3;  // how far from the middle the texture's may be, in distances
 constexpr double kAtRest = 1e-7;
 
 Eigen::Matrix2d world_to_robot(double theta) {
@@ -75,81 +75,69 @@ Eigen::Matrix3d CeilingFilter::camera_errors_covariance() const {
   return P_.block<3, 3>(3, 3);
 }
 
-void CeilingFilter::move(const Pose2& to, const MotionJacobian& F, const Eigen::Matrix3d& Q) {
-  x_.head<3>() = to.vector();
-  const Eigen::MatrixXd rows = F * P_.topRows<kCommon>();
+void CeilingFilter::move(const Motion& motion) {
+  x_.head<3>() = motion.to.vector();
+  const Eigen::MatrixXd rows = motion.F * P_.topRows<kCommon>();
   P_.topRows<3>() = rows;
   P_.leftCols<3>().bottomRows(P_.rows() - 3) = rows.rightCols(P_.cols() - 3).transpose();
-  const Eigen::Matrix3d pose = rows.leftCols<kCommon>() * F.transpose();
-  P_.topLeftCorner<3, 3>() = 0.5 * (pose + pose.transpose()) + Q;
-  lively_Q_ = Q.trace() > kCalming * lively_Q_.trace() ? Q : kCalming * lively_Q_;
+  const Eigen::Matrix3d pose = rows.leftCols<kCommon>() * motion.F.transpose();
+  P_.topLeftCorner<3, 3>() = 0.5 * (pose + pose.transpose()) + motion.Q;
+  lively_Q_ = motion.Q.trace() > kCalming * lively_Q_.trace() ? motion.Q : kCalming * lively_Q_;
   refresh_belief();
 }
 
-void CeilingFilter::predict(const OdometryIncrement& u) {
+/// A step in the robot's frame, turned to the world's axes. What the camera's errors do to it
+/// counts as far as the step was seen by the camera: @p seen, a share.
+CeilingFilter::Motion CeilingFilter::led_on(const FlowMotion& step,
+                                            const Eigen::Matrix3d& seen) const {
   const Pose2 from = pose();
-  MotionJacobian F = MotionJacobian::Zero();
-  F.leftCols<3>() = move_jacobian_pose(from, u);
-  const Eigen::Matrix3d G = move_jacobian_control(from, u);
-  stamp_ = u.to;
-  move(vigia::move(from, u), F, G * control_covariance(u, params_.odometry) * G.transpose());
-}
-
-/// The flow was levelled by the mounting as it was known. A tilt τ puts the vertical beside the
-/// middle of what it took for level, at o = (−τy, τx), so that a turn seems to be a shift, too: s =
-/// s′ − (I − R) o. What a tilt does besides, by where in the picture the texture lies, is taken for
-/// noise.
-CeilingFilter::Motion CeilingFilter::seen_motion(const ImageShift& shift) const {
-  const Pose2 from = pose();
-  const CeilingCamera camera = corrected(camera_, camera_errors());
-  const Eigen::Vector2d tilt = x_.segment<2>(3);
-  Eigen::Matrix2d beside;
-  beside << 0.0, -1.0, 1.0, 0.0;
-  const Eigen::Matrix2d dshift_dtilt =
-      (Eigen::Rotation2Dd(shift.turn).toRotationMatrix() - Eigen::Matrix2d::Identity()) * beside;
-  ImageShift level = shift;
-  level.shift += dshift_dtilt * tilt;
-  Motion motion{robot_motion(camera, level), MotionJacobian::Zero(), Eigen::Matrix3d::Zero()};
-  const Eigen::Matrix2d R = Eigen::Rotation2Dd(from.theta).toRotationMatrix();
-  const Eigen::Vector2d step = R * motion.step.position();
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  R.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(from.theta).toRotationMatrix();
+  Motion motion{compose(from, step.step), MotionJacobian::Zero(), Eigen::Matrix3d::Zero()};
   motion.F.leftCols<3>().setIdentity();
-  motion.F.block<2, 1>(0, 2) = Eigen::Vector2d(-step.y(), step.x());
-  motion.F.block<2, 2>(0, 3) = camera.rise_m() * R * dshift_dtilt;
-  motion.F.block<2, 1>(0, 5) = R * (camera.rise_m() * level.shift);
-  Eigen::Matrix3d G = Eigen::Matrix3d::Identity();
-  G.topLeftCorner<2, 2>() = camera.rise_m() * R;
-  Eigen::Matrix3d covariance = shift.covariance;
-  const double tilted = tilt.squaredNorm() + P_(3, 3) + P_(4, 4);
-  covariance.diagonal().array() += params_.flow_floor * params_.flow_floor +
-                                   kTiltedFlow * kTiltedFlow * tilted * shift.shift.squaredNorm();
-  motion.Q = G * covariance * G.transpose();
+  motion.F(0, 2) = from.y - motion.to.y;
+  motion.F(1, 2) = motion.to.x - from.x;
+  motion.F.rightCols<3>() = R * seen * step.derrors;
+  motion.Q = R * step.covariance * R.transpose();
   return motion;
 }
 
+FlowMotion CeilingFilter::seen_motion(const ImageShift& shift) const {
+  return flow_motion(camera_, shift, camera_errors(), P_(3, 3) + P_(4, 4), params_.flow_floor);
+}
+
+void CeilingFilter::predict(const OdometryIncrement& u) {
+  Motion motion{vigia::move(pose(), u), MotionJacobian::Zero(), Eigen::Matrix3d::Zero()};
+  motion.F.leftCols<3>() = move_jacobian_pose(pose(), u);
+  const Eigen::Matrix3d G = move_jacobian_control(pose(), u);
+  motion.Q = G * control_covariance(u, params_.odometry) * G.transpose();
+  stamp_ = u.to;
+  move(motion);
+}
+
 void CeilingFilter::predict(const ImageShift& shift, Stamp to) {
-  const Motion seen = seen_motion(shift);
+  const FlowMotion seen = seen_motion(shift);
   const double reach = params_.max_speed_mps * (to - stamp_).seconds() + kFlowSlack_m;
   if (seen.step.position().norm() > reach || reach > 0.5 * grid_.pitch_m) {
     predict_unknown(to);
     return;
   }
   stamp_ = to;
-  move(compose(pose(), seen.step), seen.F, seen.Q);
+  move(led_on(seen, Eigen::Matrix3d::Identity()));
 }
 
-void CeilingFilter::predict(const OdometryIncrement& u, const ImageShift& shift) {
-  const Motion seen = seen_motion(shift);
-  const Eigen::Matrix3d G = move_jacobian_control(pose(), u);
-  const Eigen::Vector3d off = difference(compose(pose(), seen.step), vigia::move(pose(), u));
-  Eigen::Matrix3d S = G * control_covariance(u, params_.odometry) * G.transpose() + seen.Q;
-  // What tilt and height leave of the flow, and odometry's own variance where it reads nothing.
-  S.diagonal().array() += kFlowSlack_m * kFlowSlack_m;
-  if (off.dot(S.ldlt().solve(off)) > params_.gate) {
+bool CeilingFilter::predict(const OdometryIncrement& u, const ImageShift& shift) {
+  FlowMotion motion = seen_motion(shift);
+  const auto fused = fuse_motions(u, params_.odometry, motion, params_.gate);
+  if (!fused) {
     predict(u);
-    return;
+    return false;
   }
+  motion.step = fused->step;
+  motion.covariance = fused->covariance;
   stamp_ = u.to;
-  move(compose(pose(), seen.step), seen.F, seen.Q);
+  move(led_on(motion, fused->flow_weight));
+  return true;
 }
 
 void CeilingFilter::predict_unknown(Stamp to) {
@@ -159,12 +147,11 @@ void CeilingFilter::predict_unknown(Stamp to) {
   const double reach = params_.max_speed_mps / 3.0;
   const double turn = 2.0 * params_.max_speed_mps;  // rad/s, of a robot half a metre wide
   const double grown = unknown_s_ * unknown_s_ - before * before;
-  Eigen::Matrix3d Q = Eigen::Matrix3d::Zero();
-  Q.diagonal() << reach * reach * grown, reach * reach * grown, turn * turn * grown;
-  MotionJacobian F = MotionJacobian::Zero();
-  F.leftCols<3>().setIdentity();
+  Motion motion{pose(), MotionJacobian::Zero(), Eigen::Matrix3d::Zero()};
+  motion.F.leftCols<3>().setIdentity();
+  motion.Q.diagonal() << reach * reach * grown, reach * reach * grown, turn * turn * grown;
   stamp_ = to;
-  move(pose(), F, Q);
+  move(motion);
 }
 
 /// Whether the prediction does not tell by itself which patch is which.

@@ -1,7 +1,11 @@
 #include "vigia/localization/ceiling_localizer.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
+#include <vector>
+
+#include "vigia/localization/motion_fusion.hpp"
 
 namespace vigia::localization {
 namespace {
@@ -39,25 +43,60 @@ void CeilingLocalizer::predict(const OdometryIncrement& increment) {
 
 UpdateResult CeilingLocalizer::update(const Observation& observation) {
   const auto* seen = std::get_if<PatchesObservation>(&observation);
+  const auto* flow = std::get_if<FlowObservation>(&observation);
   UpdateResult result;
-  if (seen == nullptr) return result;
+  if (seen == nullptr && (flow == nullptr || !uses_flow_)) return result;
   result.status = UpdateStatus::no_prior;
   if (!has_prior_) return result;
-  const Stamp exposed = seen->shot.stamp;
+  result = seen != nullptr ? fuse(*seen) : follow(*flow);
+  refresh_belief();
+  return result;
+}
+
+UpdateResult CeilingLocalizer::fuse(const PatchesObservation& seen) {
+  const Stamp exposed = seen.shot.stamp;
   const auto after = std::find_if(steps_.begin(), steps_.end(),
                                   [&](const Step& step) { return exposed < step.increment.to; });
+  UpdateResult result;
   result.status = UpdateStatus::too_late;
   if (after != steps_.end() && exposed < after->increment.from) return result;
   CeilingFilter filter = after == steps_.end() ? filter_ : after->before;
-  const CeilingUpdate update = filter.update(seen->patches);
-  for (auto step = after; step != steps_.end(); ++step) {
+  const CeilingUpdate update = filter.update(seen.patches);
+  repeat(after, std::move(filter));
+  result.status = status_of(update, filter_.belief());
+  return result;
+}
+
+UpdateResult CeilingLocalizer::follow(const FlowObservation& flow) {
+  const auto first = std::find_if(steps_.begin(), steps_.end(), [&](const Step& step) {
+    return step.increment.from == flow.from;
+  });
+  const auto last = std::find_if(
+      first, steps_.end(), [&](const Step& step) { return step.increment.to == flow.shot.stamp; });
+  UpdateResult result;
+  result.status = UpdateStatus::too_late;
+  result.dof = 3;
+  if (last == steps_.end()) return result;
+  std::vector<OdometryIncrement> parts;
+  for (auto step = first; step != std::next(last); ++step) parts.push_back(step->increment);
+  *first = {first->before, joined(parts), flow.shift};
+  const auto begin = std::prev(steps_.erase(std::next(first), std::next(last)));
+  const bool agreed = repeat(begin, begin->before);
+  result.status = agreed ? UpdateStatus::fused : UpdateStatus::gated;
+  return result;
+}
+
+/// The steps from one on, begun with @p filter, anew; whether the flow of the first was believed.
+bool CeilingLocalizer::repeat(const Steps::iterator& from, CeilingFilter filter) {
+  bool believed = false;
+  for (auto step = from; step != steps_.end(); ++step) {
     step->before = filter;
-    filter.predict(step->increment);
+    const bool agreed = step->flow && filter.predict(step->increment, *step->flow);
+    if (!step->flow) filter.predict(step->increment);
+    if (step == from) believed = agreed;
   }
   filter_ = std::move(filter);
-  refresh_belief();
-  result.status = status_of(update, belief_);
-  return result;
+  return believed;
 }
 
 void CeilingLocalizer::lose() {

@@ -8,6 +8,8 @@
 namespace vigia::localization {
 namespace {
 
+constexpr double kTiltedFlow = 0.3;  // how far from the middle the texture's may be, in distances
+
 Eigen::Matrix3d tilt_rotation(const CeilingCameraErrors& errors) {
   const Eigen::Vector3d tilt(errors.tilt_x, errors.tilt_y, 0.0);
   const double angle = tilt.norm();
@@ -75,6 +77,38 @@ Pose2 robot_motion(const CeilingCamera& camera, const ImageShift& shift) {
   const Eigen::Vector2d moved =
       c + camera.rise_m() * shift.shift - Eigen::Rotation2Dd(shift.turn) * c;
   return {moved.x(), moved.y(), wrap_angle(shift.turn)};
+}
+
+ImageShift seen_shift(const CeilingCamera& camera, const Pose2& motion) {
+  const Eigen::Vector2d c = camera.rMc.translation().head<2>();
+  ImageShift shift;
+  shift.shift = (motion.position() - c + Eigen::Rotation2Dd(motion.theta) * c) / camera.rise_m();
+  shift.turn = motion.theta;
+  return shift;
+}
+
+FlowMotion flow_motion(const CeilingCamera& camera, const ImageShift& shift,
+                       const CeilingCameraErrors& errors, double tilt_variance, double floor) {
+  const CeilingCamera right = corrected(camera, errors);
+  const double rise = right.rise_m();
+  const Eigen::Vector2d tilt(errors.tilt_x, errors.tilt_y);
+  Eigen::Matrix2d beside;
+  beside << 0.0, -1.0, 1.0, 0.0;
+  const Eigen::Matrix2d dshift_dtilt =
+      (Eigen::Rotation2Dd(shift.turn).toRotationMatrix() - Eigen::Matrix2d::Identity()) * beside;
+  ImageShift level = shift;
+  level.shift += dshift_dtilt * tilt;
+  FlowMotion motion;
+  motion.step = robot_motion(right, level);
+  motion.derrors.topLeftCorner<2, 2>() = rise * dshift_dtilt;
+  motion.derrors.topRightCorner<2, 1>() = rise * level.shift;
+  motion.covariance = shift.covariance;
+  motion.covariance.diagonal().array() += floor * floor + kTiltedFlow * kTiltedFlow *
+                                                              (tilt.squaredNorm() + tilt_variance) *
+                                                              shift.shift.squaredNorm();
+  motion.covariance.topRows<2>() *= rise;
+  motion.covariance.leftCols<2>() *= rise;
+  return motion;
 }
 
 }  // namespace vigia::localization

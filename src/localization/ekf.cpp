@@ -87,17 +87,13 @@ void EkfLocalizer::predict(const OdometryIncrement& increment) {
 }
 
 UpdateResult EkfLocalizer::update(const Observation& observation) {
-  const bool usable = std::visit(Overloaded{[](const FieldObservation&) { return false; },
-                                            [](const PatchesObservation&) { return false; },
-                                            [](const StereoObservation&) { return false; },
-                                            [](const auto& seen) { return is_usable(seen); }},
-                                 observation);
+  const auto image = landmark_image(observation);
   UpdateResult result{UpdateStatus::degenerate, std::nullopt, 0.0, 0};
-  if (!shows_landmark(observation))
+  if (!image)
     result.status = UpdateStatus::unsupported;
   else if (!has_prior_)
     result.status = UpdateStatus::no_prior;
-  else if (usable)
+  else if (std::visit([](const auto* seen) { return is_usable(*seen); }, *image))
     result = process(observation);
   ++counts_[static_cast<std::size_t>(result.status)];
   refresh_belief();

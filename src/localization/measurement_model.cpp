@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "vigia/core/overloaded.hpp"
 #include "vigia/localization/chi_square.hpp"
 
 namespace vigia::localization {
@@ -20,37 +19,35 @@ MeasurementModel::MeasurementModel(LandmarkMap map, const RigOnGround& on_ground
 
 Association MeasurementModel::associate(const Observation& observation,
                                         const LookState& state) const {
-  return std::visit(Overloaded{[](const FieldObservation&) { return Association{}; },
-                               [](const PatchesObservation&) { return Association{}; },
-                               [](const StereoObservation&) { return Association{}; },
-                               [&](const auto& seen) {
-                                 auto found = localization::associate(*this, seen, state);
-                                 Association association{found.result, std::nullopt};
-                                 if (found.match) association.match = *std::move(found.match);
-                                 return association;
-                               }},
-                    observation);
+  const auto image = landmark_image(observation);
+  if (!image) return {};
+  return std::visit(
+      [&](const auto* seen) {
+        auto found = localization::associate(*this, *seen, state);
+        Association association{found.result, std::nullopt};
+        if (found.match) association.match = *std::move(found.match);
+        return association;
+      },
+      *image);
 }
 
 std::optional<Match> MeasurementModel::match(const Observation& observation,
                                              const Landmark& landmark) const {
-  return std::visit(Overloaded{[](const FieldObservation&) { return std::optional<Match>(); },
-                               [](const PatchesObservation&) { return std::optional<Match>(); },
-                               [](const StereoObservation&) { return std::optional<Match>(); },
-                               [&](const auto& seen) -> std::optional<Match> {
-                                 return localization::match(*this, seen, landmark);
-                               }},
-                    observation);
+  const auto image = landmark_image(observation);
+  if (!image) return std::nullopt;
+  return std::visit(
+      [&](const auto* seen) -> std::optional<Match> {
+        return localization::match(*this, *seen, landmark);
+      },
+      *image);
 }
 
 std::optional<double> MeasurementModel::log_likelihood(const Observation& observation,
                                                        const Pose2& pose) const {
+  const auto image = landmark_image(observation);
+  if (!image) return std::nullopt;
   return std::visit(
-      Overloaded{[](const FieldObservation&) { return std::optional<double>(); },
-                 [](const PatchesObservation&) { return std::optional<double>(); },
-                 [](const StereoObservation&) { return std::optional<double>(); },
-                 [&](const auto& seen) { return localization::log_likelihood(*this, seen, pose); }},
-      observation);
+      [&](const auto* seen) { return localization::log_likelihood(*this, *seen, pose); }, *image);
 }
 
 Eigen::Array3d MeasurementModel::look_biases(CameraId camera) const {

@@ -14,12 +14,14 @@ OdometryIncrement part(const OdometryIncrement& u, double begin, double end) {
   const bool straight = std::abs(half_turn) < 1e-9 || std::abs(half_turn) > 1.5;
   const double chord = straight ? share : std::sin(share * half_turn) / std::sin(half_turn);
   const double dt = (u.to - u.from).seconds();
-  return {u.from + Duration::from_seconds(begin * dt),
-          u.from + Duration::from_seconds(end * dt),
-          share * half_turn + skew,
-          chord * u.trans,
-          share * half_turn - skew,
-          u.crab};
+  OdometryIncrement some{u.from + Duration::from_seconds(begin * dt),
+                         u.from + Duration::from_seconds(end * dt),
+                         share * half_turn + skew,
+                         chord * u.trans,
+                         share * half_turn - skew,
+                         u.crab};
+  if (u.covariance) some.covariance = share * *u.covariance;
+  return some;
 }
 
 }  // namespace

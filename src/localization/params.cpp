@@ -79,4 +79,25 @@ void describe(ParamVisitor& v, BearingOnlyParams& p) {
             "triples of landmarks that a search tries, at most");
 }
 
+void describe(ParamVisitor& v, CeilingFilterParams& p) {
+  v.map("odometry", p.odometry,
+        About("the odometry's noise that this localizer assumes").otherwise(kFromNoise));
+  v.angle("tilt_sigma_deg", p.tilt_sigma, {0.0, 20.0},
+          "σ of the camera's tilt about either axis, constant, that its calibration leaves");
+  v.number("height_sigma", p.height_sigma, {0.0, 0.5},
+           About("σ of the camera's distance to the ceiling, constant").in("of it"));
+  v.number("gate", p.gate, {1.0, 1000.0},
+           About("of a patch's three numbers, and of flow against odometry").in("χ²"));
+  v.number("flow_floor", p.flow_floor, {0.0, 0.1},
+           About("σ of a frame's shift by the flow beside what its match claims")
+               .in("distances to the ceiling"));
+  v.number("sure", p.sure, {0.5, 0.999999},
+           "a shift by whole cells is believed alone from this weight on; below, `ambiguous`");
+  v.number("spurious", p.spurious, {1e-6, 0.5}, "chance of a patch where the grid has none");
+  v.number("missing", p.missing, {1e-6, 0.5},
+           "chance that a patch of the grid in plain sight is not found");
+  v.integer("max_gated", p.max_gated, {1, 1000},
+            "frames in a row that contradict the prediction, until it is doubted");
+}
+
 }  // namespace vigia::localization

@@ -9,6 +9,7 @@
 #include "vigia/localization/ceiling_localizer.hpp"
 #include "vigia/localization/ekf.hpp"
 #include "vigia/localization/field_localizer.hpp"
+#include "vigia/localization/flow_fed_localizer.hpp"
 #include "vigia/localization/ml_fix_localizer.hpp"
 #include "vigia/localization/odometry_localizer.hpp"
 #include "vigia/localization/pattern_fix.hpp"
@@ -91,11 +92,9 @@ LocalizerPtr make_murea(const MissionSetup& setup, std::uint64_t /*seed*/) {
 }
 
 LocalizerPtr make_ceiling(const MissionSetup& setup, std::uint64_t /*seed*/) {
-  localization::CeilingFilterParams params;
-  params.odometry = setup.noise.odometry;
   return std::make_unique<localization::CeilingLocalizer>(
       ceiling_camera(setup).value_or(localization::CeilingCamera{}),
-      setup.world.ceiling.value_or(CeilingGrid{}), params);
+      setup.world.ceiling.value_or(CeilingGrid{}), setup.ceiling, moved_by_flow(setup, "ceiling"));
 }
 
 LocalizerPtr make_running_fix(const MissionSetup& setup, std::uint64_t /*seed*/) {
@@ -189,6 +188,19 @@ const std::vector<LocalizerEntry>& localizers() {
        &make_ml_fix},
   };
   return table;
+}
+
+bool moved_by_flow(const MissionSetup& setup, const std::string& name) {
+  return std::find(setup.flow.begin(), setup.flow.end(), name) != setup.flow.end();
+}
+
+LocalizerPtr make_localizer(const MissionSetup& setup, const std::string& name,
+                            std::uint64_t seed) {
+  LocalizerPtr made = find_name(localizers(), name)->make(setup, seed);
+  const auto camera = ceiling_camera(setup);
+  // The ceiling's own takes the flow as it is.
+  if (!moved_by_flow(setup, name) || !camera || name == "ceiling") return made;
+  return std::make_unique<localization::FlowFedLocalizer>(std::move(made), *camera, setup.ceiling);
 }
 
 std::optional<localization::CeilingCamera> ceiling_camera(const MissionSetup& setup) {

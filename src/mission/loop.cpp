@@ -70,6 +70,7 @@ Loop::Loop(const MissionSetup& setup, std::uint64_t seed, const std::vector<List
       rig_(setup.robot.rig()),
       cameras_(make_feeds(setup, rig_, simulator_.latency(), simulator_.processing())),
       attention_(make_attention(setup, rig_, seed, log_)),
+      rejections_(log_, rig_),
       recovery_(make_recovery(setup, rig_, cameras_, log_)),
       ring_doubt_(setup.world.plan, ring_model(setup)),
       navigator_(setup, log_),
@@ -78,7 +79,7 @@ Loop::Loop(const MissionSetup& setup, std::uint64_t seed, const std::vector<List
   EstimatorTick& estimator = tick_.estimator;
   for (const auto& name : setup.localizers) {
     if (name == setup.primary) estimator.primary = localizers_.size();
-    localizers_.push_back(find_name(localizers(), name)->make(setup, seed));
+    localizers_.push_back(make_localizer(setup, name, seed));
     localizers_.back()->reset(estimator.now, setup.prior);
   }
   attention_->follow(navigator_.path());
@@ -196,16 +197,24 @@ std::vector<Delivery> Loop::deliver(const Readings& readings) {
 std::vector<Observation> Loop::observe(const std::vector<Delivery>& deliveries) {
   const Stopwatch stopwatch;
   const auto request = attention_->request();
-  std::vector<Observation> observations;
+  std::vector<std::pair<Observation, ExposureTruth>> all;
   for (const Delivery& delivery : deliveries) {
     if (!delivery.present) continue;
     const Stamp exposed = delivery.exposure->shot.stamp;
     const Camera& camera = rig_.at(delivery.exposure->shot.camera);
     auto seen =
         delivery.eye->observe(delivery.capture(), motion_.belief_at(exposed, belief()), request);
-    tick_.estimator.truth->exposures.insert(tick_.estimator.truth->exposures.end(), seen.size(),
-                                            truth_of(*delivery.exposure, camera));
-    std::move(seen.begin(), seen.end(), std::back_inserter(observations));
+    for (Observation& one : seen)
+      all.emplace_back(std::move(one), truth_of(*delivery.exposure, camera));
+  }
+  // Motions first: what another camera shows at their end comes after them.
+  std::stable_partition(all.begin(), all.end(), [](const auto& one) {
+    return std::holds_alternative<FlowObservation>(one.first);
+  });
+  std::vector<Observation> observations;
+  for (auto& [observation, truth] : all) {
+    observations.push_back(std::move(observation));
+    tick_.estimator.truth->exposures.push_back(truth);
   }
   tick_.timing.track += stopwatch.elapsed_ms();
   return observations;
@@ -229,6 +238,7 @@ void Loop::judge(const Readings& readings, const std::vector<Delivery>& deliveri
   const auto& results = estimator.localizers[estimator.primary].updates;
   for (std::size_t k = 0; k < results.size(); ++k)
     attention_->judge(estimator.observations[k], results[k], readings);
+  rejections_.judge(estimator.observations, results);
   for (const Delivery& delivery : deliveries)
     if (delivery.present)
       delivery.eye->settle(motion_.belief_at(delivery.exposure->shot.stamp, belief()));

@@ -7,6 +7,7 @@
 #include "navigator.hpp"
 #include "recovery.hpp"
 #include "ring_doubt.hpp"
+#include "undirected_rejections.hpp"
 
 #include <memory>
 #include <optional>
@@ -59,6 +60,7 @@ class Loop {
   std::vector<CameraFeed> cameras_;  ///< in the rig's order
   std::vector<std::unique_ptr<localization::Localizer>> localizers_;
   std::unique_ptr<Attention> attention_;
+  UndirectedRejections rejections_;
   std::unique_ptr<Recovery> recovery_;
   RingDoubt ring_doubt_;
   Navigator navigator_;

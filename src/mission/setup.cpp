@@ -20,6 +20,8 @@
 namespace vigia::mission {
 namespace {
 
+constexpr const char* kNobody = "none";
+
 const Bounds kMetres{-1e4, 1e4};
 constexpr double kLeastRoute_m = 0.01;
 /// What the pilot's executor keeps free beside the robot.
@@ -151,6 +153,24 @@ void describe_localizers(ParamVisitor& v, MissionSetup& setup) {
   v.names("localizers", setup.localizers, known, run);
 }
 
+/// Whom the ceiling's flow moves: the localizer of its patches, unless others are named.
+void describe_ceiling(ParamVisitor& v, MissionSetup& setup) {
+  setup.ceiling.odometry = setup.noise.odometry;
+  v.map("ceiling", setup.ceiling, "the localizer under a patched ceiling, and the ceiling's flow");
+  std::vector<std::string> known = names_of(localizers());
+  known.emplace_back(kNobody);
+  setup.flow = {contains(setup.localizers, "ceiling") ? "ceiling" : kNobody};
+  v.names("flow", setup.flow, known,
+          About("the localizers that the flow of the ceiling moves on beside the odometry")
+              .otherwise("`[ceiling]` where that runs"));
+  v.require(setup.flow.size() == 1 || !contains(setup.flow, kNobody), "flow",
+            "'none' stands alone");
+  if (v.reader() == nullptr || !v.reader()->has("flow")) return;
+  for (const std::string& name : setup.flow)
+    v.require(name == kNobody || contains(setup.localizers, name), "flow",
+              "'" + name + "' is not among the localizers that run");
+}
+
 void describe_localization(ParamVisitor& v, MissionSetup& setup) {
   describe_localizers(v, setup);
   // Matched to the robot unless the mission says otherwise.
@@ -166,6 +186,9 @@ void describe_localization(ParamVisitor& v, MissionSetup& setup) {
   setup.bearing_only.odometry = setup.noise.odometry;
   setup.bearing_only.sensor = setup.noise.sensor;
   v.map("bearing_only", setup.bearing_only, "the localizer that learns from bearings alone");
+  v.where(ceiling_camera(setup).has_value(),
+          "the world has a `ceiling` and a fixed camera looks up at it",
+          [&] { describe_ceiling(v, setup); });
 }
 
 /// Eyes for landmarks read pinhole images, the eye for a field those of a mirror in colour;

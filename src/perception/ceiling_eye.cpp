@@ -1,6 +1,10 @@
 #include "ceiling_eye.hpp"
 
+#include <utility>
+
 #include <fmt/format.h>
+
+#include "vigia/imaging/image_frame.hpp"
 
 namespace vigia::perception {
 
@@ -20,26 +24,50 @@ void CeilingEye::look_through(const Shot& shot) {
   params.width_px = grid_->width_m / rise_m * pinhole->px;
   params.polarity = grid_->polarity;
   finder_.emplace(params);
+  flow_.emplace(*pinhole, on_ground_.rig.at(shot.camera).rMc(shot.head).linear());
+}
+
+bool CeilingEye::looks_at_ceiling(const Shot& shot) {
+  if (!finder_) look_through(shot);
+  return finder_.has_value();
+}
+
+PatchesObservation CeilingEye::patches_in(const vpImage<unsigned char>& picture, const Shot& shot) {
+  last_ = finder_->find(imaging::ImageFrame(picture));
+  return {shot, last_.patches};
+}
+
+/// The motion since the frame before that was observed.
+std::optional<FlowObservation> CeilingEye::flow_to(const vpImage<unsigned char>& picture,
+                                                   const Shot& shot) {
+  const auto shift = flow_->next(picture);
+  const std::optional<Stamp> before = std::exchange(before_, shot.stamp);
+  agreement_ = shift ? flow_->agreement() : 0.0;
+  if (!shift || !before) return std::nullopt;
+  return FlowObservation{shot, *before, *shift};
 }
 
 std::vector<Observation> CeilingEye::observe(const Capture& capture, const Belief& /*then*/,
                                              const std::optional<GazeRequest>& /*request*/) {
-  return survey(capture);
+  if (!looks_at_ceiling(capture.shot)) return {};
+  const vpImage<unsigned char> picture = imaging::grey_image(capture.frame);
+  std::vector<Observation> seen;
+  if (const auto flow = flow_to(picture, capture.shot)) seen.emplace_back(*flow);
+  seen.emplace_back(patches_in(picture, capture.shot));
+  return seen;
 }
 
 std::vector<Observation> CeilingEye::survey(const Capture& capture) {
-  if (!finder_) look_through(capture.shot);
-  if (!finder_) return {};
-  last_ = finder_->find(capture.frame);
-  return {PatchesObservation{capture.shot, last_.patches}};
+  if (!looks_at_ceiling(capture.shot)) return {};
+  return {patches_in(imaging::grey_image(capture.frame), capture.shot)};
 }
 
 std::vector<std::string> CeilingEye::columns() const {
-  return {"patches", "dark_spots"};
+  return {"patches", "dark_spots", "flow_agreement"};
 }
 
 void CeilingEye::append_cells(std::string& line) const {
-  line += fmt::format(",{},{}", last_.patches.size(), last_.rejected);
+  line += fmt::format(",{},{},{:.2f}", last_.patches.size(), last_.rejected, agreement_);
 }
 
 imaging::Overlay CeilingEye::overlay() const {

@@ -7,10 +7,12 @@
 #include "vigia/core/ceiling_grid.hpp"
 #include "vigia/perception/eye.hpp"
 #include "vigia/tracking/patch_finder.hpp"
+#include "vigia/tracking/plane_flow.hpp"
 
 namespace vigia::perception {
 
-/// Observes a patched ceiling in the picture of a camera that looks up.
+/// Observes a patched ceiling in the picture of a camera that looks up: its patches, and how the
+/// picture moved since the one before.
 class CeilingEye : public Eye {
  public:
   explicit CeilingEye(const EyeParts& parts);
@@ -26,10 +28,16 @@ class CeilingEye : public Eye {
 
  private:
   void look_through(const Shot& shot);
+  bool looks_at_ceiling(const Shot& shot);
+  PatchesObservation patches_in(const vpImage<unsigned char>& picture, const Shot& shot);
+  std::optional<FlowObservation> flow_to(const vpImage<unsigned char>& picture, const Shot& shot);
 
   std::optional<CeilingGrid> grid_;
   RigOnGround on_ground_;
   std::optional<tracking::PatchFinder> finder_;  ///< of the camera whose captures come
+  std::optional<tracking::FrameFlow> flow_;      ///< of the same
+  std::optional<Stamp> before_;                  ///< exposure of the frame before
+  double agreement_ = 0.0;                       ///< of the last flow
   tracking::PatchScan last_;
 };
 

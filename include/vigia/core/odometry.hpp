@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Core>
 
 #include "vigia/core/actuation.hpp"
@@ -19,6 +21,8 @@ struct OdometryIncrement {
   /// The part of rot1 that is no turn: an omnidirectional base goes in a direction that it does not
   /// face, and rot2 takes it back. Of a unicycle 0. It counts for the errors alone.
   double crab = 0.0;
+  /// Of (rot1, trans, rot2), where something else than the wheels' noise model says it.
+  std::optional<Eigen::Matrix3d> covariance = std::nullopt;
 };
 
 /// Random-walk error of odometry: variances that grow with the distance driven and the angle
@@ -29,7 +33,8 @@ struct OdometryNoise {
   double rot_per_sqrt_rad = 0.01;  ///< rad per √rad turned
 };
 
-/// Covariance Σ of (rot1, trans, rot2); the turn's error is split evenly between rot1 and rot2.
+/// Covariance Σ of (rot1, trans, rot2): the increment's own, or by the wheels' noise, the turn's
+/// error split evenly between rot1 and rot2.
 Eigen::Matrix3d control_covariance(const OdometryIncrement& u, const OdometryNoise& noise);
 
 /// Armingol eq. 6, corrected: translation along Θ + ΔΘ1.

@@ -4,15 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "vigia/core/field_map.hpp"
 #include "vigia/core/landmark.hpp"
-#include "vigia/core/rig.hpp"
-#include "vigia/core/sensor_noise.hpp"
+#include "vigia/evaluation/drive_bound.hpp"
 #include "vigia/evaluation/loss_score.hpp"
-#include "vigia/evaluation/pcrlb.hpp"
-#include "vigia/localization/ceiling_filter.hpp"
-#include "vigia/localization/corner_filter.hpp"
-#include "vigia/localization/field_model.hpp"
 #include "vigia/mission/estimator_tick.hpp"
 
 namespace vigia::evaluation {
@@ -62,26 +56,6 @@ struct LocalizerScore {
   std::vector<LookScore> looks;
 };
 
-/// What a drive's estimators are scored with.
-struct EstimatorSetup {
-  LandmarkMap landmarks;
-  RigOnGround on_ground;
-  OdometryNoise odometry;  ///< of the wheels, as it truly is
-  SensorNoise sensor;      ///< of the head's and the zoom's readings, as it truly is
-  Eigen::Matrix3d prior_covariance = Eigen::Matrix3d::Zero();  ///< of (x, y, θ) at the start
-  bool prior =
-      true;  ///< whether the localizer was told; if not, its errors count from the first fix
-  std::optional<FieldMap> field = std::nullopt;
-  /// A patched ceiling and the camera that looks up at it.
-  struct Ceiling {
-    localization::CeilingCamera camera;
-    CeilingGrid grid;
-  };
-  std::optional<Ceiling> ceiling = std::nullopt;
-  /// A stereo pair on a field with goals, and what its calibration may miss.
-  std::optional<localization::CornerFilterParams> corners = std::nullopt;
-};
-
 /// Scores one localizer of a drive, simulated or recorded, by what an estimator's ticks hold:
 /// errors against the truth, consistency, losses, and the posterior Cramér–Rao bound along the
 /// looks that it fused, linearised at the true state and with the true association.
@@ -97,20 +71,12 @@ class EstimatorScorer {
   double bound_position_m2() const;
 
  private:
-  Eigen::Matrix3d bound_covariance() const;
   std::optional<LookId> count_updates(const mission::EstimatorTick& tick, std::size_t localizer);
   void add_errors(const mission::EstimatorTick& tick, const Belief& belief,
                   std::optional<LookId> fused);
-  void bound_by(const Observation& observation, const mission::ExposureTruth& truth);
 
   EstimatorSetup setup_;
-  std::optional<localization::FieldModel> field_;
-  PosteriorBound bound_;
-  /// Where there is a ceiling, the bound instead: placement errors are states of it.
-  std::optional<localization::CeilingFilter> ceiling_;
-  /// Where there is a stereo pair, the bound instead: the errors of its calibration are states of
-  /// it.
-  std::optional<localization::CornerFilter> corners_;
+  DriveBound bound_;
   LossScorer losses_;
   LocalizerScore score_;
   /// Over ticks with the truth.

@@ -63,8 +63,8 @@ class CeilingFilter {
   /// The motion between two frames by optical flow. It says nothing where it is faster than the
   /// robot can be, nor where the robot may have gone half a pitch: the patches repeat.
   void predict(const ImageShift& shift, Stamp to);
-  /// By the flow, unless the odometry contradicts it.
-  void predict(const OdometryIncrement& increment, const ImageShift& shift);
+  /// By both, or where they contradict each other by the odometry alone: false.
+  bool predict(const OdometryIncrement& increment, const ImageShift& shift);
   /// Nothing is known but how fast the robot may be.
   void predict_unknown(Stamp to);
   CeilingUpdate update(const std::vector<PatchImage>& patches);
@@ -119,14 +119,15 @@ class CeilingFilter {
   void doubt();
   void shift_by(CeilingCell shift);
   using MotionJacobian = Eigen::Matrix<double, 3, 6>;
-  /// A motion in the robot's frame, what it makes of the state's covariance, and its own.
+  /// Where a motion leads, what it makes of the state's covariance, and its own.
   struct Motion {
-    Pose2 step;
+    Pose2 to;
     MotionJacobian F;
     Eigen::Matrix3d Q;
   };
-  Motion seen_motion(const ImageShift& shift) const;
-  void move(const Pose2& to, const MotionJacobian& F, const Eigen::Matrix3d& Q);
+  FlowMotion seen_motion(const ImageShift& shift) const;
+  Motion led_on(const FlowMotion& step, const Eigen::Matrix3d& seen) const;
+  void move(const Motion& motion);
   void refresh_belief();
 
   CeilingCamera camera_;

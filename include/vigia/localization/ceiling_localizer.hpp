@@ -8,13 +8,15 @@
 namespace vigia::localization {
 
 /// CeilingFilter among the localizers of a mission. A frame that comes late is fused where it was
-/// exposed, and the odometry since then goes over it again. A grid without identities cannot say
-/// where in it a lost robot is: without a prior it stays lost.
+/// exposed, and the odometry since then goes over it again; a flow is fused with the odometry
+/// between its frames, wherever an increment ends at each of them. A grid without identities cannot
+/// say where in it a lost robot is: without a prior it stays lost.
 class CeilingLocalizer final : public Localizer {
  public:
+  /// @p flow: whether the ceiling's flow moves it, too.
   CeilingLocalizer(const CeilingCamera& camera, const CeilingGrid& grid,
-                   const CeilingFilterParams& params)
-      : filter_(camera, grid, params) {}
+                   const CeilingFilterParams& params, bool flow = true)
+      : filter_(camera, grid, params), uses_flow_(flow) {}
 
   std::string_view name() const override { return "ceiling"; }
   void reset(Stamp stamp, const std::optional<Prior>& prior) override;
@@ -24,16 +26,22 @@ class CeilingLocalizer final : public Localizer {
   void lose() override;
 
  private:
-  /// The filter before an increment of odometry, and that increment.
+  /// The filter before an increment of odometry, that increment, and the flow meanwhile.
   struct Step {
     CeilingFilter before;
     OdometryIncrement increment;
+    std::optional<ImageShift> flow = std::nullopt;
   };
+  using Steps = std::deque<Step>;
 
+  UpdateResult fuse(const PatchesObservation& seen);
+  UpdateResult follow(const FlowObservation& flow);
+  bool repeat(const Steps::iterator& from, CeilingFilter filter);
   void refresh_belief();
 
-  CeilingFilter filter_;    ///< at the last increment's end
-  std::deque<Step> steps_;  ///< of the last second, in order of time
+  CeilingFilter filter_;  ///< at the last increment's end
+  Steps steps_;           ///< of the last second, in order of time
+  bool uses_flow_;
   bool has_prior_ = false;
   Belief belief_;
 };

@@ -51,4 +51,22 @@ std::optional<PatchOnCeiling> on_ceiling(const CeilingCamera& camera, const Patc
 /// The robot's motion by a camera's over the ceiling, which is levelled by the camera's rMc.
 Pose2 robot_motion(const CeilingCamera& camera, const ImageShift& shift);
 
+/// The other way round: what such a camera sees of the robot's motion.
+ImageShift seen_shift(const CeilingCamera& camera, const Pose2& motion);
+
+/// A motion as the flow shows it, in the robot's frame where it began.
+struct FlowMotion {
+  Pose2 step;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< by the image alone
+  Eigen::Matrix3d derrors = Eigen::Matrix3d::Zero();         ///< ∂step/∂errors
+};
+
+/// The flow was levelled by the mounting as it was known. A tilt τ puts the vertical beside the
+/// middle of what it took for level, at o = (−τy, τx), so that a turn seems to be a shift, too: s =
+/// s′ − (I − R) o. What a tilt of the variance @p tilt_variance does besides, by where in the
+/// picture the texture lies, is taken for noise. @p floor: σ of a shift beside what the match
+/// claims, in distances to the ceiling.
+FlowMotion flow_motion(const CeilingCamera& camera, const ImageShift& shift,
+                       const CeilingCameraErrors& errors, double tilt_variance, double floor);
+
 }  // namespace vigia::localization

@@ -33,6 +33,14 @@ struct LocalizerEntry : NameEntry {
 /// Every localizer, in the order of a run's tables.
 const std::vector<LocalizerEntry>& localizers();
 
+/// Whether the mission wants the ceiling's flow to move that localizer on.
+bool moved_by_flow(const MissionSetup& setup, const std::string& localizer);
+
+/// The localizer of that name, moved on by the ceiling's flow as well where the mission says so.
+std::unique_ptr<localization::Localizer> make_localizer(const MissionSetup& setup,
+                                                        const std::string& name,
+                                                        std::uint64_t seed);
+
 /// Whether the localizer cannot be part of the mission unless that gives a prior.
 bool needs_prior(const LocalizerEntry& entry, const MissionSetup& setup);
 

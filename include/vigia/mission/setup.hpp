@@ -11,6 +11,7 @@
 #include "vigia/core/noise_model.hpp"
 #include "vigia/core/world_map.hpp"
 #include "vigia/localization/bearing_only.hpp"
+#include "vigia/localization/ceiling_filter.hpp"
 #include "vigia/localization/ekf.hpp"
 #include "vigia/pilot/pilot_params.hpp"
 #include "vigia/planner/look_trigger.hpp"
@@ -82,6 +83,9 @@ struct MissionSetup {
   NoiseModel noise;  ///< what the robot believes of its sensors
   localization::EkfParams ekf;
   localization::BearingOnlyParams bearing_only;
+  localization::CeilingFilterParams ceiling;
+  /// Of the localizers those that the ceiling's flow moves on beside the odometry, or "none".
+  std::vector<std::string> flow;
   LookParams look;
   servo::GazeParams gaze;
   pilot::PilotParams pilot;
