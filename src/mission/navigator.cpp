@@ -1,18 +1,32 @@
 #include "navigator.hpp"
 
+#include <algorithm>
+#include <iterator>
+#include <limits>
+
 namespace vigia::mission {
+namespace {
+
+/// Beyond a point by so much of the path, it lies behind.
+constexpr double kBehind_m = 0.3;
+
+}  // namespace
 
 Navigator::Navigator(const MissionSetup& setup, EventLog& log)
     : setup_(setup),
       log_(log),
       pilot_(setup.path, setup.world.plan, setup.robot.robot.radius_m, setup.robot.robot.base,
              setup.pilot),
-      waypoints_(setup.waypoints) {}
+      waypoints_(setup.waypoints) {
+  for (std::size_t i = 1; i + 1 < waypoints_.size(); ++i)
+    vias_.push_back({waypoints_[i], std::numeric_limits<double>::infinity()});
+}
 
 NavigationStep Navigator::step(const pilot::PilotInput& input) {
   const pilot::PilotOutput output = pilot_.step(input);
   NavigationStep step{output.rates, output.activations};
   record(output);
+  watch_vias(input.belief.pose);
   if (output.status == pilot::PilotStatus::blocked) go_round(input, output, step);
   return step;
 }
@@ -34,6 +48,25 @@ void Navigator::record(const pilot::PilotOutput& output) {
     log_.record(EventKind::wait, {{"station_m", output.station_m}});
   }
   status_ = output.status;
+}
+
+/// A point counts as passed when the robot's body has been over it.
+void Navigator::watch_vias(const Pose2& here) {
+  for (Via& via : vias_) via.nearest_m = std::min(via.nearest_m, (here.position() - via.at).norm());
+  const Path& path = pilot_.path();
+  double station = 0.0;
+  auto next = vias_.begin();
+  while (next != vias_.end()) {
+    const bool ahead =
+        std::find(waypoints_.begin() + 1, waypoints_.end(), next->at) != waypoints_.end();
+    if (ahead) station = path.project(next->at, station, path.length());
+    const bool passed = next->nearest_m <= setup_.robot.robot.radius_m;
+    if (!passed && ahead && !pilot_.arrived() && pilot_.station() < station + kBehind_m) break;
+    if (!passed)
+      log_.record(EventKind::via_missed,
+                  {{"x_m", next->at.x()}, {"y_m", next->at.y()}, {"nearest_m", next->nearest_m}});
+    next = vias_.erase(next);
+  }
 }
 
 /// The path stays blocked: another one is planned round what blocks it. Without any, the robot
