@@ -9,6 +9,8 @@ namespace {
 
 /// Beyond a point by so much of the path, it lies behind.
 constexpr double kBehind_m = 0.3;
+/// Times in a drive that a passage is driven at anew after the robot came to stand aside of it.
+constexpr int kRealign = 3;
 
 }  // namespace
 
@@ -28,6 +30,7 @@ NavigationStep Navigator::step(const pilot::PilotInput& input) {
   record(output);
   watch_vias(input.belief.pose);
   if (output.status == pilot::PilotStatus::blocked) go_round(input, output, step);
+  if (output.refused) go_elsewhere(input, *output.refused, step);
   return step;
 }
 
@@ -85,6 +88,27 @@ void Navigator::go_round(const pilot::PilotInput& input, const pilot::PilotOutpu
   }
   blockages_.note(input.now, pilot_.obstacles(here));
   step.replanned = replan(here, "blocked", blockages_.recent(input.now));
+}
+
+void Navigator::go_elsewhere(const pilot::PilotInput& input, const pilot::PassageRefusal& refused,
+                             NavigationStep& step) {
+  const Pose2& here = input.belief.pose;
+  if (refused.misaligned && realigned_++ < kRealign && replan(here, "aside of a passage")) {
+    step.replanned = true;
+    return;
+  }
+  log_.record(EventKind::refused, {{"x_m", refused.at.x()},
+                                   {"y_m", refused.at.y()},
+                                   {"width_m", refused.width_m},
+                                   {"beside_m", refused.beside_m},
+                                   {"sigma_m", refused.sigma_m}});
+  std::vector<RoundObstacle> others = blockages_.recent(input.now);
+  others.push_back({refused.at, 0.5 * refused.width_m});
+  step.replanned = replan(here, "too narrow", others);
+  if (step.replanned) return;
+  log_.record(EventKind::stuck, {},
+              {{"reason", "a passage is too narrow and there is no way round"}});
+  step.gave_up = true;
 }
 
 bool Navigator::replan(const Pose2& from, const std::string& reason,

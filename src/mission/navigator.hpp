@@ -41,6 +41,9 @@ class Navigator {
   void watch_vias(const Pose2& here);
   void go_round(const pilot::PilotInput& input, const pilot::PilotOutput& output,
                 NavigationStep& step);
+  /// The pilot does not go into a passage: another way, or none.
+  void go_elsewhere(const pilot::PilotInput& input, const pilot::PassageRefusal& refused,
+                    NavigationStep& step);
 
   const MissionSetup& setup_;
   EventLog& log_;
@@ -49,6 +52,7 @@ class Navigator {
   std::vector<Eigen::Vector2d> waypoints_;  ///< of the path that the pilot follows
   pilot::PilotStatus status_ = pilot::PilotStatus::driving;
   bool evading_ = false;
+  int realigned_ = 0;  ///< times that a passage was driven at anew
   /// A point to pass that is not done with.
   struct Via {
     Eigen::Vector2d at;
