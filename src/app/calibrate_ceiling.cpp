@@ -56,18 +56,10 @@ CeilingDriveCount follow_pictures(const CeilingCalibrationOptions& options,
   return count;
 }
 
-/// In rad and relative. What images of patches err by alike in every frame, which the filter takes
-/// for noise, stands beside what it knows.
-Eigen::Matrix3d calibration_covariance(const perception::CeilingFollower& follower) {
-  constexpr double kTiltFloor = from_deg(0.005);
-  Eigen::Matrix3d P = follower.camera_errors_covariance();
-  P.diagonal().head<2>().array() += kTiltFloor * kTiltFloor;
-  return P;
-}
-
+/// Estimates with their σ.
 std::string ceiling_parameters(const perception::CeilingFollower& follower, double rise_m) {
   const localization::CeilingCameraErrors errors = follower.camera_errors();
-  const Eigen::Vector3d sigma = calibration_covariance(follower).diagonal().cwiseSqrt();
+  const Eigen::Vector3d sigma = follower.camera_errors_covariance().diagonal().cwiseSqrt();
   const double rise = rise_m * std::exp(errors.log_height);
   return fmt::format(
       "parameter,estimate,sigma\ntilt_x_deg,{:.5f},{:.5f}\ntilt_y_deg,{:.5f},{:.5f}\n"
@@ -77,7 +69,7 @@ std::string ceiling_parameters(const perception::CeilingFollower& follower, doub
 }
 
 std::string ceiling_covariance(const perception::CeilingFollower& follower) {
-  const Eigen::Matrix3d P = calibration_covariance(follower);
+  const Eigen::Matrix3d P = follower.camera_errors_covariance();
   const char* names[] = {"tilt_x_rad", "tilt_y_rad", "log_rise"};
   std::string text = "parameter,tilt_x_rad,tilt_y_rad,log_rise\n";
   for (int i = 0; i < 3; ++i)

@@ -12,6 +12,8 @@
 namespace vigia::app {
 namespace {
 
+constexpr const char* kUsualPlacement = "0.005:1.3";  // of whoever hangs them by a string
+
 std::optional<double> parsed_number(std::string_view text) {
   double value = 0.0;
   const char* end = text.data() + text.size();
@@ -66,7 +68,7 @@ perception::CeilingView ceiling_view(const CeilingOptions& options, const std::s
   if (!options.patch_m.empty())
     std::tie(view.grid.length_m, view.grid.width_m) =
         parse_patch("--patch-m", options.patch_m, 0.005, 0.5 * options.pitch_m);
-  if (!options.placement.empty()) parse_placement(options.placement, view.grid);
+  parse_placement(options.placement.empty() ? kUsualPlacement : options.placement, view.grid);
   return view;
 }
 
@@ -83,7 +85,7 @@ void add_ceiling_options(CLI::App& command, CeilingOptions& options) {
       ->capture_default_str();
   command.add_option("--placement", options.placement,
                      "ceiling, with --camera: METRES:DEGREES, σ of a patch's place beside its node "
-                     "of the grid and of its direction");
+                     "of the grid and of its direction (0.005:1.3)");
   command
       .add_option("--rate-hz", options.rate_hz,
                   "ceiling, with --camera: of pictures that have no time of their own")

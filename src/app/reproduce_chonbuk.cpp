@@ -12,6 +12,8 @@
 #include "vigia/evaluation/ceiling_bursts.hpp"
 #include "vigia/evaluation/ceiling_study.hpp"
 #include "vigia/evaluation/metrics.hpp"
+#include "vigia/imaging/image_frame.hpp"
+#include "vigia/perception/ceiling_follower.hpp"
 #include "vigia/report/curve_chart.hpp"
 
 namespace vigia::app {
@@ -310,6 +312,71 @@ void study_pipes(const ChonbukRun& run) {
           kCmPerMetre * summary.max_m, {}, summary.frames);
 }
 
+/// A drive whose camera is mounted and hung as drawn, as `vigia calibrate ceiling` reads it.
+struct CalibrationTrial {
+  Eigen::Vector3d error;  ///< tilts, degrees, and the distance, cm
+  Eigen::Vector3d sigma;  ///< stated
+};
+
+CalibrationTrial try_calibration(std::uint64_t seed) {
+  constexpr int kPictures = 80;
+  constexpr double kTiltSigma = from_deg(1.0);
+  constexpr double kHeightSigma = 0.03;
+  RandomStream random(seed, "calibration");
+  CeilingSetting setting = ideal(seed);
+  setting.ceiling.spurious = 0.02;
+  setting.ceiling.grid.placement_m = 0.005;
+  setting.ceiling.grid.placement_turn = from_deg(1.3);
+  const Eigen::Vector2d tilt(kTiltSigma * random.normal(), kTiltSigma * random.normal());
+  setting.tilt = tilt.norm();
+  setting.tilt_axis = std::atan2(tilt.y(), tilt.x());
+  setting.height_error = kHeightSigma * std::clamp(random.normal(), -3.0, 3.0);
+  const evaluation::CeilingHall hall(setting);
+  perception::CeilingView view;
+  view.camera = setting.camera;
+  view.rise_m = setting.known_camera().rise_m();
+  view.grid = setting.ceiling.grid;
+  view.tilt_sigma = kTiltSigma;
+  view.height_sigma = kHeightSigma;
+  perception::CeilingFollower follower(view);
+  Pose2 pose{random.uniform(-50.0, 50.0), random.uniform(-50.0, 50.0), random.uniform(-kPi, kPi)};
+  for (int i = 0; i < kPictures; ++i) {
+    follower.next(imaging::grey_image(*hall.expose(pose, i)), Stamp::from_seconds(kPeriod_s * i));
+    pose = compose(pose, {0.05, 0.0, 0.02});
+  }
+  const Eigen::Vector3d unit(to_deg(1.0), to_deg(1.0), kCmPerMetre * view.rise_m);
+  const Eigen::Vector3d found = follower.camera_errors().vector();
+  const Eigen::Vector3d sigma = follower.camera_errors_covariance().diagonal().cwiseSqrt();
+  return {unit.cwiseProduct(found - setting.true_errors().vector()), unit.cwiseProduct(sigma)};
+}
+
+void study_calibration(const ChonbukRun& run) {
+  constexpr int kDrives = 30;
+  constexpr std::uint64_t kCalibrationSeed = 2000;
+  const int drives = run.lines(kDrives);
+  double tilt = 0.0;
+  double tilt_worst = 0.0;
+  double rise = 0.0;
+  double rise_worst = 0.0;
+  Eigen::Vector3d nees = Eigen::Vector3d::Zero();
+  for (int i = 0; i < drives; ++i) {
+    const auto trial = try_calibration(kCalibrationSeed + static_cast<std::uint64_t>(i));
+    tilt += trial.error.head<2>().squaredNorm() / (2.0 * drives);
+    tilt_worst = std::max(tilt_worst, trial.error.head<2>().cwiseAbs().maxCoeff());
+    rise += trial.error.z() * trial.error.z() / drives;
+    rise_worst = std::max(rise_worst, std::abs(trial.error.z()));
+    nees += trial.error.cwiseQuotient(trial.sigma).cwiseAbs2() / drives;
+  }
+  const std::string name = "calibrated by 80 pictures: ";
+  run.add(name + "tilt about an axis, rms", "°", {}, {}, std::sqrt(tilt), {}, 2 * drives);
+  run.add(name + "tilt about an axis, greatest error", "°", {}, {}, tilt_worst, {}, 2 * drives);
+  run.add(name + "tilt, NEES a degree of freedom", "1", {}, {}, 0.5 * (nees[0] + nees[1]), 1.0,
+          2 * drives);
+  run.add(name + "distance, rms", "cm", {}, {}, std::sqrt(rise), {}, drives);
+  run.add(name + "distance, greatest error", "cm", {}, {}, rise_worst, {}, drives);
+  run.add(name + "distance, NEES a degree of freedom", "1", {}, {}, nees[2], 1.0, drives);
+}
+
 /// What a fusion makes of bursts: frames in which it is off by more than 10 cm two seconds after.
 struct BurstTally {
   int bursts = 0;
@@ -512,6 +579,7 @@ evaluation::PaperTable reproduce_chonbuk(const PaperOptions& options) {
   const auto frames = study_flow(run, drives);
   study_turn(run);
   study_pipes(run);
+  study_calibration(run);
   study_fusion(run, drives, frames, CeilingFault::misread, 10,
                {0.01, 0.02, 0.03, 0.05, 0.08, 0.15});
   study_fusion(run, drives, frames, CeilingFault::unseen, 10, {0.03, 0.05});

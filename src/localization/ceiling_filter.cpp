@@ -497,11 +497,10 @@ void CeilingFilter::fuse(const Linearised& all) {
 /// fix out it is not believed alone. Called with what a frame is about to teach.
 void CeilingFilter::note_lone_patch(const std::vector<Seen>& passed) {
   const CeilingCell& cell = passed.front().cell;
-  if (passed.size() > 1)
-    lone_.reset();
-  else if (wide())
+  const bool alone = passed.size() == 1;
+  if (alone && wide())
     lone_ = cell;
-  else if (lone_ && *lone_ != cell)
+  else if (!alone || (lone_ && *lone_ != cell))
     lone_.reset();
 }
 

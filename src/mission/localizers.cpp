@@ -1,6 +1,7 @@
 #include "vigia/mission/localizers.hpp"
 
 #include "localizer_params.hpp"
+#include "robot_parts.hpp"
 
 #include <algorithm>
 
@@ -26,8 +27,13 @@ bool has_landmarks(const MissionSetup& setup) {
   return !setup.world.landmarks.all().empty();
 }
 
+/// A field, and an eye that scans it.
 bool has_field(const MissionSetup& setup) {
-  return setup.world.field.has_value();
+  const Rig rig = setup.robot.rig();
+  return setup.world.field &&
+         std::any_of(rig.cameras.begin(), rig.cameras.end(), [&](const Camera& camera) {
+           return std::string_view(eye_of(camera, setup.world, rig)) == "field";
+         });
 }
 
 bool has_ceiling(const MissionSetup& setup) {
@@ -140,20 +146,20 @@ const std::vector<LocalizerEntry>& localizers() {
       {{"field_grid",
         "refined matches of a mirror camera's scans with a field's lines, followed in time as "
         "weighted hypotheses (after Minho)",
-        "a field in the world"},
+        "a field in the world, and a camera that scans it"},
        true,
        FirstPose::itself,
        &has_field,
        &make_field_grid},
       {{"mcl", "Monte Carlo localization on a field's lines, goals and posts",
-        "a field in the world"},
+        "a field in the world, and a camera that scans it"},
        false,
        FirstPose::itself,
        &has_field,
        &make_mcl},
       {{"murea",
         "MUREA, evidence accumulated in cells of poses that are divided further and further",
-        "a field in the world"},
+        "a field in the world, and a camera that scans it"},
        false,
        FirstPose::itself,
        &has_field,

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kStartSigma_m = 0.05;
 constexpr double kStartTurn = from_deg(4.0);
+constexpr double kTiltFloor = from_deg(0.005);
 
 localization::CeilingCamera camera_under(const CeilingView& view) {
   localization::CeilingCamera camera;
@@ -87,6 +88,12 @@ CeilingFollower::Step CeilingFollower::next(const vpImage<unsigned char>& pictur
   }
   step.update = filter_.update(step.scan.patches);
   return step;
+}
+
+Eigen::Matrix3d CeilingFollower::camera_errors_covariance() const {
+  Eigen::Matrix3d P = filter_.camera_errors_covariance();
+  P.diagonal().head<2>().array() += kTiltFloor * kTiltFloor;
+  return P;
 }
 
 std::optional<Belief> CeilingFollower::belief() const {

@@ -43,9 +43,11 @@ class CeilingFollower {
 
   /// Nothing until a patch has been seen.
   std::optional<Belief> belief() const;
-  /// What its patches have said of tilt and height so far, and the covariance.
+  /// What its patches have said of tilt (rad) and height (relative) so far, and the covariance.
+  /// What patches' images err by alike in every frame, which the filter takes for noise, is part of
+  /// it.
   localization::CeilingCameraErrors camera_errors() const { return filter_.camera_errors(); }
-  Eigen::Matrix3d camera_errors_covariance() const { return filter_.camera_errors_covariance(); }
+  Eigen::Matrix3d camera_errors_covariance() const;
 
  private:
   bool begin(const tracking::PatchScan& scan, Stamp stamp);
