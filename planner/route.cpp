@@ -2,6 +2,7 @@
 
 #include "room_to_move.hpp"
 #include "route_search.hpp"
+#include "straight_passages.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -114,8 +115,12 @@ Route plan_route(const FloorPlan& plan, const std::vector<Vector2d>& waypoints,
 
   Polyline points;
   for (std::size_t i = 0; i + 1 < waypoints.size(); ++i) {
+    const LegPlanner plan_between_points = [&](const Vector2d& from, const Vector2d& to) {
+      return plan_leg_with_fallback(body, from, to, params, derive_seed(seed, i));
+    };
     const Polyline leg =
-        plan_leg_with_fallback(body, waypoints[i], waypoints[i + 1], params, derive_seed(seed, i));
+        with_straight_passages(body, plan_between_points(waypoints[i], waypoints[i + 1]),
+                               params.robot_radius_m + params.clearance_m, plan_between_points);
     if (leg.empty()) return failure(route, RouteStatus::no_route, i);
     points.insert(points.end(), leg.begin(), leg.end());
   }

@@ -45,7 +45,7 @@ CREATE TABLE looks (
   squared_error_m2 REAL, bound_m2 REAL, PRIMARY KEY (mission, localizer, look)) WITHOUT ROWID;
 CREATE TABLE losses (
   mission INTEGER REFERENCES missions, localizer TEXT, number INTEGER, said_s REAL,
-  passed_half_metre_s REAL, ended_s REAL, PRIMARY KEY (mission, localizer, number)) WITHOUT ROWID;
+  passed_half_metre_s REAL, ended_s REAL, false_alarm INTEGER, PRIMARY KEY (mission, localizer, number)) WITHOUT ROWID;
 )";
 
 void add_campaign(SqliteFile& file, const Campaign& campaign) {
@@ -104,7 +104,7 @@ void add_missions(SqliteFile& file, const std::vector<std::vector<DriveScore>>& 
   each_localizer([&](std::int64_t mission, const std::string& name, const LocalizerScore& s) {
     for (std::size_t i = 0; i < s.lost.size(); ++i)
       file.insert("losses", mission, name, static_cast<std::int64_t>(i), s.lost[i].said_s,
-                  s.lost[i].passed_s, s.lost[i].ended_s);
+                  s.lost[i].passed_s, s.lost[i].ended_s, s.lost[i].false_alarm() ? 1 : 0);
   });
 }
 

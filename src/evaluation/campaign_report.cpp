@@ -70,10 +70,18 @@ Json arm_json(const Arm& arm, const ArmStatistics& statistics) {
       {"collided", share_json(s.collided, s.runs, s.collided_share)},
       {"lost",
        {{"episodes", s.losses.episodes},
-        {"announced", share_json(s.losses.announced, s.losses.episodes, s.losses.announced_share)},
+        {"false_alarms", s.losses.false_alarms},
+        {"false_alarms_per_drive", s.losses.false_alarms / static_cast<double>(s.runs)},
+        {"false_alarms_per_km", json_of(s.losses.false_alarms_per_km)},
+        {"drives_without_false_alarm",
+         share_json(s.losses.drives_without, s.runs, s.losses.drives_without_share)},
+        {"losses", s.losses.losses},
+        {"beyond_half_metre", s.losses.beyond},
+        {"announced", share_json(s.losses.announced, s.losses.losses, s.losses.announced_share)},
         {"ended", s.losses.ended},
         {"recovered", share_json(s.losses.ended, s.losses.episodes, s.losses.ended_share)},
-        {"mean_lost_s", s.losses.mean_lost_s}}},
+        {"mean_lost_s", s.losses.mean_lost_s},
+        {"ambiguous_share", s.losses.ambiguous_share}}},
       {"means", metrics_json(statistics.means)},
       {"differences", metrics_json(statistics.differences)},
       {"localizers", Json::object()}};
@@ -82,8 +90,7 @@ Json arm_json(const Arm& arm, const ArmStatistics& statistics) {
 }
 
 std::string said_in_time(const LossStatistics& losses) {
-  return losses.episodes == 0 ? "–"
-                              : share(losses.announced, losses.episodes, losses.announced_share);
+  return losses.losses == 0 ? "–" : share(losses.announced, losses.losses, losses.announced_share);
 }
 
 std::string found_again(const LossStatistics& losses) {
@@ -100,7 +107,8 @@ TextRows arm_rows(const Campaign& campaign, const std::vector<ArmStatistics>& st
   for (const auto& metric : campaign_metrics()) rows.front().push_back(metric.label);
   for (const char* label :
        {"PCRLB ratio", "NEES/dof", "ANEES in band", "times lost", "said before 50 cm",
-        "found again", "false alarms /km", "misses", "recoveries right", "Brier"})
+        "found again", "false alarms", "/km", "drives without", "misses", "delay s",
+        "recoveries right", "ambiguous", "Brier"})
     rows.front().emplace_back(label);
   for (std::size_t i = 0; i < statistics.size(); ++i) {
     const SeedStatistics& s = statistics[i].over_seeds;
@@ -113,12 +121,16 @@ TextRows arm_rows(const Campaign& campaign, const std::vector<ArmStatistics>& st
     row.push_back(figure(l.pcrlb_ratio, 1, 3));
     row.push_back(fmt::format("{:.3f}", l.nees_per_dof));
     row.push_back(fmt::format("{:.0f} % of {}", 100 * l.anees_in_band, l.anees.size()));
-    row.push_back(std::to_string(s.losses.episodes));
+    row.push_back(std::to_string(s.losses.losses));
     row.push_back(said_in_time(s.losses));
     row.push_back(found_again(s.losses));
-    row.push_back(fmt::format("{} ({:.1f})", l.loss.false_alarms, l.loss.false_alarms_per_km()));
+    row.push_back(std::to_string(s.losses.false_alarms));
+    row.push_back(figure(s.losses.false_alarms_per_km, 1, 1));
+    row.push_back(share(s.losses.drives_without, s.runs, s.losses.drives_without_share));
     row.push_back(std::to_string(l.loss.misses));
+    row.push_back(l.loss.said == 0 ? "–" : fmt::format("{:.1f}", l.loss.delay_mean_s));
     row.push_back(right_recoveries(l));
+    row.push_back(fmt::format("{:.1f} %", 100 * s.losses.ambiguous_share));
     row.push_back(fmt::format("{:.4f}", l.loss.brier));
     rows.push_back(row);
   }
@@ -203,8 +215,15 @@ std::string single_text(const Campaign& campaign, const ArmStatistics& statistic
                             figure(statistics.means[m], metrics[m].factor, metrics[m].digits),
                             metrics[m].key == "sim_s" ? "\n" : ", ");
   text += fmt::format(
-      "times lost {}, said before 50 cm {}, found again {}\n\nmeans over seeds [95 %]\n",
-      s.losses.episodes, said_in_time(s.losses), found_again(s.losses));
+      "times lost {} ({} beyond 50 cm), said before 50 cm {}, found again {}, ambiguous {:.1f} % "
+      "of "
+      "the time\nfalse alarms {} ({:.3f} per drive, {} per km), drives without {}\n\n"
+      "means over seeds [95 %]\n",
+      s.losses.losses, s.losses.beyond, said_in_time(s.losses), found_again(s.losses),
+      100 * s.losses.ambiguous_share, s.losses.false_alarms,
+      s.losses.false_alarms / static_cast<double>(s.runs),
+      figure(s.losses.false_alarms_per_km, 1, 2),
+      share(s.losses.drives_without, s.runs, s.losses.drives_without_share));
   for (const auto& [name, l] : s.localizers) text += localizer_text(name, l);
   return text;
 }
@@ -225,25 +244,28 @@ std::string campaign_csv(const Campaign& campaign,
   std::string text =
       "seed,outcome,sim_s,looks,stops,localizer,position_final_m,heading_final_rad,"
       "position_rmse_m,position_max_m,nees_mean,pcrlb_position_rms_m,lost_s,arm,policy,primary,"
-      "disturbance,variant,stopped_s,lost_episodes,lost_announced,lost_ended\n";
+      "disturbance,variant,stopped_s,lost_episodes,lost_announced,lost_ended,"
+      "lost_false_alarms\n";
   for (std::size_t arm = 0; arm < scores.size(); ++arm)
     for (const auto& score : scores[arm])
       for (const auto& [name, l] : score.localizers) {
         int announced = 0;
         int ended = 0;
+        int false_alarms = 0;
         for (const auto& episode : l.lost) {
           announced += episode.announced() ? 1 : 0;
           ended += episode.ended_s ? 1 : 0;
+          false_alarms += episode.false_alarm() ? 1 : 0;
         }
         text += fmt::format(
             "{},{},{:.3f},{},{},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.4f},{:.6f},{:.2f},"
-            "{},{},{},{},{},{:.2f},{},{},{}\n",
+            "{},{},{},{},{},{:.2f},{},{},{},{}\n",
             score.seed, to_string(score.outcome), score.sim_s, score.perception.looks,
             score.perception.stops, name, l.position_final_m, l.heading_final_rad,
             l.position_rmse_m, l.position_max_m, l.nees_mean, l.pcrlb_position_rms_m, l.lost_s,
             campaign.arms[arm].name, campaign.arms[arm].setup.look.policy, score.primary,
             campaign.arms[arm].disturbance, campaign.arms[arm].variant, score.perception.stopped_s,
-            l.lost.size(), announced, ended);
+            l.lost.size(), announced, ended, false_alarms);
       }
   return text;
 }

@@ -1,7 +1,5 @@
 #include "vigia/evaluation/estimator_score.hpp"
 
-#include "lost_episodes.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -87,7 +85,6 @@ void EstimatorScorer::add_errors(const mission::EstimatorTick& tick, const Belie
   score_.heading_final_rad = std::abs(error.z());
   const double now_s = tick.now.seconds();
   const double dt_s = (tick.odometry.to - tick.odometry.from).seconds();
-  update_episodes(score_.lost, now_s, belief.status == BeliefStatus::lost, std::sqrt(squared));
   losses_.add(now_s, dt_s, std::abs(tick.odometry.trans), belief, truth);
   if (!fused) return;
   auto& looks = score_.looks;
@@ -110,6 +107,7 @@ LocalizerScore EstimatorScorer::score() const {
   score.pcrlb_position_final_m = mean_length(bound.topLeftCorner<2, 2>());
   score.pcrlb_heading_final_rad = std::sqrt(2.0 * bound(2, 2) / kPi);
   score.loss = losses_.score();
+  score.lost = losses_.episodes();
   return score;
 }
 

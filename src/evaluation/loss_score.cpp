@@ -1,16 +1,12 @@
 #include "vigia/evaluation/loss_score.hpp"
 
+#include "lost_episodes.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace vigia::evaluation {
 namespace {
-
-/// Whether the error is beyond @p share of one of the two limits.
-bool beyond(double error_m, double sigma_m, double share) {
-  return error_m > share * LossScorer::kAstray_m ||
-         error_m > share * LossScorer::kAstraySigmas * sigma_m;
-}
 
 int ticks_of(const LossScore& score) {
   int ticks = 0;
@@ -61,8 +57,10 @@ LossScore combined(const std::vector<LossScore>& drives) {
 void LossScorer::add(double now_s, double dt_s, double driven_m, const Belief& belief,
                      const Pose2& truth) {
   const double error_m = (belief.pose.position() - truth.position()).norm();
-  const bool astray = beyond(error_m, belief.position_sigma(), 1.0);
-  follow_status(astray, belief);
+  const double sigma_m = belief.position_sigma();
+  const bool astray = is_astray(error_m, sigma_m);
+  update_episodes(episodes_, now_s, belief.status == BeliefStatus::lost, error_m, sigma_m);
+  follow_status(error_m, belief);
   follow_error(now_s, dt_s, error_m, belief);
   score_.driven_m += driven_m;
   if (belief.status == BeliefStatus::ambiguous) score_.ambiguous_s += dt_s;
@@ -70,31 +68,29 @@ void LossScorer::add(double now_s, double dt_s, double driven_m, const Belief& b
   last_ = belief.status;
 }
 
-void LossScorer::follow_status(bool astray, const Belief& belief) {
-  if (!last_ || belief.status == *last_) return;
-  const bool alarm = *last_ == BeliefStatus::tracking && belief.status == BeliefStatus::lost;
-  if (alarm && !astray && belief.position_sigma() <= kAstray_m) ++score_.false_alarms;
-  if (belief.status != BeliefStatus::tracking) return;
-  ++(astray ? score_.wrong_recoveries : score_.right_recoveries);
+void LossScorer::follow_status(double error_m, const Belief& belief) {
+  if (!last_ || belief.status == *last_ || belief.status != BeliefStatus::tracking) return;
+  const bool wrong = error_m > allowed_error_m(belief.position_sigma());
+  ++(wrong ? score_.wrong_recoveries : score_.right_recoveries);
 }
 
 void LossScorer::follow_error(double now_s, double dt_s, double error_m, const Belief& belief) {
-  const double sigma_m = belief.position_sigma();
+  const double allowed_m = allowed_error_m(belief.position_sigma());
   const bool says_tracking = belief.status == BeliefStatus::tracking;
-  if (beyond(error_m, sigma_m, 1.0)) {
+  if (error_m > allowed_m) {
     if (says_tracking) score_.unsaid_s += dt_s;
     // What begins while it says that it does not know is no miss.
-    if (!open_ && says_tracking) open_ = Astray{now_s, std::nullopt, false};
+    if (!open_ && says_tracking) open_ = Wrong{now_s, std::nullopt, false};
   }
   if (!open_) return;
   open_->over_half_metre = open_->over_half_metre || error_m > kAstray_m;
   if (!says_tracking && !open_->said_s) open_->said_s = now_s;
-  if (!open_->said_s && beyond(error_m, sigma_m, 0.5)) return;
+  if (!open_->said_s && error_m > 0.5 * allowed_m) return;
   close(*open_);
   open_.reset();
 }
 
-void LossScorer::close(const Astray& ended) {
+void LossScorer::close(const Wrong& ended) {
   if (!ended.said_s) {
     ++score_.misses;
     if (ended.over_half_metre) ++score_.misses_over_half_metre;
@@ -121,6 +117,8 @@ LossScore LossScorer::score() const {
   LossScorer whole = *this;
   if (whole.open_) whole.close(*whole.open_);
   LossScore score = whole.score_;
+  score.false_alarms = static_cast<int>(std::count_if(
+      episodes_.begin(), episodes_.end(), [](const LostEpisode& e) { return e.false_alarm(); }));
   if (score.said > 0) score.delay_mean_s = whole.delay_sum_s_ / score.said;
   if (ticks_ > 0) score.brier = brier_sum_ / ticks_;
   for (CalibrationBin& bin : score.calibration)

@@ -8,6 +8,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <boost/math/distributions/beta.hpp>
+#include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/ellint_2.hpp>
 
@@ -118,6 +119,14 @@ Interval clopper_pearson(int successes, int trials, double confidence) {
   const double n = trials;
   return {successes == 0 ? 0.0 : boost::math::quantile(Beta(k, n - k + 1.0), tail),
           successes == trials ? 1.0 : boost::math::quantile(Beta(k + 1.0, n - k), 1.0 - tail)};
+}
+
+Interval poisson_mean(int count, double confidence) {
+  using ChiSquared = boost::math::chi_squared_distribution<double>;
+  const double tail = 0.5 * (1.0 - confidence);
+  const double k = count;
+  return {count == 0 ? 0.0 : 0.5 * boost::math::quantile(ChiSquared(2.0 * k), tail),
+          0.5 * boost::math::quantile(ChiSquared(2.0 * k + 2.0), 1.0 - tail)};
 }
 
 Estimate paired_difference(const std::vector<double>& a, const std::vector<double>& b) {

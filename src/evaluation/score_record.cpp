@@ -60,7 +60,7 @@ LocalizerScore localizer_from(const Json& json) {
   json.at("lost_s").get_to(s.lost_s);
   for (const auto& e : json.at("lost"))
     s.lost.push_back({seconds_from(e.at("said_s")), seconds_from(e.at("passed_half_metre_s")),
-                      seconds_from(e.at("ended_s"))});
+                      seconds_from(e.at("ended_s")), e.at("groundless").get<bool>()});
   s.loss = loss_from(json.at("loss"));
   for (const auto& l : json.at("looks"))
     s.looks.push_back({l.at(0).get<LookId>(), l.at(1), l.at(2), l.at(3)});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace vigia::evaluation {
@@ -33,6 +34,13 @@ std::vector<std::vector<double>> look_nees(const std::vector<DriveScore>& scores
 /// Of a share of episodes; nothing is known of it where there were none.
 Interval share_of(int count, int episodes) {
   return episodes > 0 ? clopper_pearson(count, episodes) : Interval{0.0, 1.0};
+}
+
+Estimate rate_per_km(int count, double driven_m) {
+  if (driven_m <= 0.0) return {0.0, {0.0, std::numeric_limits<double>::infinity()}};
+  const Interval mean = poisson_mean(count);
+  const double km = driven_m / 1000.0;
+  return {count / km, {mean.low / km, mean.high / km}};
 }
 
 LocalizerStatistics localizer_statistics(const std::vector<DriveScore>& scores,
@@ -79,15 +87,32 @@ LocalizerStatistics localizer_statistics(const std::vector<DriveScore>& scores,
 LossStatistics loss_statistics(const std::vector<DriveScore>& scores) {
   LossStatistics losses;
   double lost_s = 0.0;
-  for (const auto& score : scores)
-    for (const auto& episode : score.localizers.at(score.primary).lost) {
+  double ambiguous_s = 0.0;
+  double driven_m = 0.0;
+  double sim_s = 0.0;
+  for (const auto& score : scores) {
+    const LocalizerScore& primary = score.localizers.at(score.primary);
+    ambiguous_s += primary.loss.ambiguous_s;
+    driven_m += primary.loss.driven_m;
+    sim_s += score.sim_s;
+    const int alarms_before = losses.false_alarms;
+    for (const auto& episode : primary.lost) {
       ++losses.episodes;
+      if (episode.false_alarm()) ++losses.false_alarms;
+      if (episode.passed_s) ++losses.beyond;
       if (episode.announced()) ++losses.announced;
       if (!episode.ended_s) continue;
       ++losses.ended;
       lost_s += *episode.ended_s - episode.began_s();
     }
-  losses.announced_share = share_of(losses.announced, losses.episodes);
+    if (losses.false_alarms == alarms_before) ++losses.drives_without;
+  }
+  losses.losses = losses.episodes - losses.false_alarms;
+  losses.false_alarms_per_km = rate_per_km(losses.false_alarms, driven_m);
+  if (sim_s > 0.0) losses.ambiguous_share = ambiguous_s / sim_s;
+  losses.drives_without_share =
+      clopper_pearson(losses.drives_without, static_cast<int>(scores.size()));
+  losses.announced_share = share_of(losses.announced, losses.losses);
   losses.ended_share = share_of(losses.ended, losses.episodes);
   if (losses.ended > 0) losses.mean_lost_s = lost_s / losses.ended;
   return losses;

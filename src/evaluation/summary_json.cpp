@@ -8,10 +8,10 @@ Json seconds(const std::optional<double>& value) {
 }
 
 Json episode_json(const LostEpisode& episode) {
-  return {{"said_s", seconds(episode.said_s)},
-          {"passed_half_metre_s", seconds(episode.passed_s)},
-          {"ended_s", seconds(episode.ended_s)},
-          {"announced", episode.announced()}};
+  return {
+      {"said_s", seconds(episode.said_s)},    {"passed_half_metre_s", seconds(episode.passed_s)},
+      {"ended_s", seconds(episode.ended_s)},  {"groundless", episode.groundless},
+      {"false_alarm", episode.false_alarm()}, {"announced", episode.announced()}};
 }
 
 Json calibration_json(const LossScore& s) {

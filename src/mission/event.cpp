@@ -44,6 +44,10 @@ std::string_view to_string(EventKind kind) {
       return "blocked";
     case EventKind::replan:
       return "replan";
+    case EventKind::refused:
+      return "refused";
+    case EventKind::via_missed:
+      return "via_missed";
     case EventKind::kidnapped:
       return "kidnapped";
     case EventKind::arrived:

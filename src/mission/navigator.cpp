@@ -1,19 +1,36 @@
 #include "navigator.hpp"
 
+#include <algorithm>
+#include <iterator>
+#include <limits>
+
 namespace vigia::mission {
+namespace {
+
+/// Beyond a point by so much of the path, it lies behind.
+constexpr double kBehind_m = 0.3;
+/// Times in a drive that a passage is driven at anew after the robot came to stand aside of it.
+constexpr int kRealign = 3;
+
+}  // namespace
 
 Navigator::Navigator(const MissionSetup& setup, EventLog& log)
     : setup_(setup),
       log_(log),
       pilot_(setup.path, setup.world.plan, setup.robot.robot.radius_m, setup.robot.robot.base,
              setup.pilot),
-      waypoints_(setup.waypoints) {}
+      waypoints_(setup.waypoints) {
+  for (std::size_t i = 1; i + 1 < waypoints_.size(); ++i)
+    vias_.push_back({waypoints_[i], std::numeric_limits<double>::infinity()});
+}
 
 NavigationStep Navigator::step(const pilot::PilotInput& input) {
   const pilot::PilotOutput output = pilot_.step(input);
   NavigationStep step{output.rates, output.activations};
   record(output);
+  watch_vias(input.belief.pose);
   if (output.status == pilot::PilotStatus::blocked) go_round(input, output, step);
+  if (output.refused) go_elsewhere(input, *output.refused, step);
   return step;
 }
 
@@ -36,6 +53,25 @@ void Navigator::record(const pilot::PilotOutput& output) {
   status_ = output.status;
 }
 
+/// A point counts as passed when the robot's body has been over it.
+void Navigator::watch_vias(const Pose2& here) {
+  for (Via& via : vias_) via.nearest_m = std::min(via.nearest_m, (here.position() - via.at).norm());
+  const Path& path = pilot_.path();
+  double station = 0.0;
+  auto next = vias_.begin();
+  while (next != vias_.end()) {
+    const bool ahead =
+        std::find(waypoints_.begin() + 1, waypoints_.end(), next->at) != waypoints_.end();
+    if (ahead) station = path.project(next->at, station, path.length());
+    const bool passed = next->nearest_m <= setup_.robot.robot.radius_m;
+    if (!passed && ahead && !pilot_.arrived() && pilot_.station() < station + kBehind_m) break;
+    if (!passed)
+      log_.record(EventKind::via_missed,
+                  {{"x_m", next->at.x()}, {"y_m", next->at.y()}, {"nearest_m", next->nearest_m}});
+    next = vias_.erase(next);
+  }
+}
+
 /// The path stays blocked: another one is planned round what blocks it. Without any, the robot
 /// waits and tries again.
 void Navigator::go_round(const pilot::PilotInput& input, const pilot::PilotOutput& output,
@@ -52,6 +88,27 @@ void Navigator::go_round(const pilot::PilotInput& input, const pilot::PilotOutpu
   }
   blockages_.note(input.now, pilot_.obstacles(here));
   step.replanned = replan(here, "blocked", blockages_.recent(input.now));
+}
+
+void Navigator::go_elsewhere(const pilot::PilotInput& input, const pilot::PassageRefusal& refused,
+                             NavigationStep& step) {
+  const Pose2& here = input.belief.pose;
+  if (refused.misaligned && realigned_++ < kRealign && replan(here, "aside of a passage")) {
+    step.replanned = true;
+    return;
+  }
+  log_.record(EventKind::refused, {{"x_m", refused.at.x()},
+                                   {"y_m", refused.at.y()},
+                                   {"width_m", refused.width_m},
+                                   {"beside_m", refused.beside_m},
+                                   {"sigma_m", refused.sigma_m}});
+  std::vector<RoundObstacle> others = blockages_.recent(input.now);
+  others.push_back({refused.at, 0.5 * refused.width_m});
+  step.replanned = replan(here, "too narrow", others);
+  if (step.replanned) return;
+  log_.record(EventKind::stuck, {},
+              {{"reason", "a passage is too narrow and there is no way round"}});
+  step.gave_up = true;
 }
 
 bool Navigator::replan(const Pose2& from, const std::string& reason,

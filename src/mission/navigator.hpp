@@ -37,8 +37,13 @@ class Navigator {
 
  private:
   void record(const pilot::PilotOutput& output);
+  /// Says which points to pass lie behind and were not passed.
+  void watch_vias(const Pose2& here);
   void go_round(const pilot::PilotInput& input, const pilot::PilotOutput& output,
                 NavigationStep& step);
+  /// The pilot does not go into a passage: another way, or none.
+  void go_elsewhere(const pilot::PilotInput& input, const pilot::PassageRefusal& refused,
+                    NavigationStep& step);
 
   const MissionSetup& setup_;
   EventLog& log_;
@@ -47,6 +52,13 @@ class Navigator {
   std::vector<Eigen::Vector2d> waypoints_;  ///< of the path that the pilot follows
   pilot::PilotStatus status_ = pilot::PilotStatus::driving;
   bool evading_ = false;
+  int realigned_ = 0;  ///< times that a passage was driven at anew
+  /// A point to pass that is not done with.
+  struct Via {
+    Eigen::Vector2d at;
+    double nearest_m;
+  };
+  std::vector<Via> vias_;
 };
 
 }  // namespace vigia::mission

@@ -88,7 +88,9 @@ Demand PtzAttention::plan(const Readings& readings, const Belief& belief, double
 
   const auto wanted = scheduler_.demand(now, belief, readings.travelled_m, path_m_ - station_m);
   // A landmark that is not where the belief has it is reason enough to stand still.
-  const bool suspicious = wanted == planner::LookDemand::stopped || !failed_.empty();
+  // Whom no ring warns does not drive on until the search has ended.
+  const bool late = overdue(now) && !setup_.robot.range_ring;
+  const bool suspicious = wanted == planner::LookDemand::stopped || !failed_.empty() || late;
   const bool idle = gaze_.state() == GazeState::idle;
   LookScheduler::Going going{station_m, readings.base_rates().v, suspicious};
   std::optional<LookScheduler::Decision> decision;
@@ -178,6 +180,18 @@ bool PtzAttention::held_up(const Readings& readings, bool nothing_to_ask) {
   else if (!held_up_since_)
     held_up_since_ = readings.now;
   return held_up_since_ && (readings.now - *held_up_since_).seconds() >= kPatience_s;
+}
+
+bool PtzAttention::overdue(Stamp now) {
+  constexpr double kSeenWithin_s = 0.2;
+  const GazeState state = gaze_.state();
+  const bool unseen =
+      state == GazeState::acquire || state == GazeState::search || state == GazeState::lost;
+  if (!unseen)
+    aimed_since_.reset();
+  else if (!aimed_since_)
+    aimed_since_ = now;
+  return aimed_since_ && (now - *aimed_since_).seconds() > kSeenWithin_s;
 }
 
 /// The events of the two limits: limit_1, stop, restart.

@@ -56,6 +56,9 @@ class PtzAttention : public Attention {
   bool contradicts_belief() const;
   /// A look has failed, the robot stands, and for a while there has been nothing else to look at.
   bool held_up(const Readings& readings, bool nothing_to_ask);
+  /// The head points at where the landmark should be, and for longer than a known one takes it is
+  /// not there.
+  bool overdue(Stamp now);
   void record_limits(planner::LookDemand demand, bool stop, double sigma_m);
   void record_gaze(servo::GazeEvent event, LandmarkId landmark, Stamp now);
   const Observation* seen_in(const std::vector<Observation>& observations) const;
@@ -75,6 +78,7 @@ class PtzAttention : public Attention {
   Look look_;
   std::vector<LandmarkId> failed_;  ///< looks in a row that ended without anything fused
   std::optional<Stamp> held_up_since_;
+  std::optional<Stamp> aimed_since_;  ///< at a landmark that is not seen there
   bool stopped_ = false;
   bool over_limit_1_ = false;
 };

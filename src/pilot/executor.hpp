@@ -22,10 +22,12 @@ class Executor {
   Executor(double robot_radius_m, BaseLimits limits, AvoidanceParams params)
       : robot_radius_m_(robot_radius_m), limits_(limits), params_(params) {}
 
-  BaseRates execute(const BaseRates& wanted, const std::vector<Hazard>& hazards) const;
+  /// @p beside_m must stay free beside the robot.
+  BaseRates execute(const BaseRates& wanted, const std::vector<Hazard>& hazards,
+                    double beside_m = 0.025) const;
 
  private:
-  double stopping_speed(const BaseRates& wanted, const Hazard& hazard) const;
+  double stopping_speed(const BaseRates& wanted, const Hazard& hazard, double beside_m) const;
 
   double robot_radius_m_;
   BaseLimits limits_;

@@ -9,17 +9,27 @@
 namespace vigia::pilot {
 namespace {
 
-constexpr double kStationWindow = 0.5;   // m that the station may advance in one step
-constexpr double kCornerReached = 0.02;  // m before a corner at which the turn begins
+constexpr double kStationWindow = 0.5;     // m that the station may advance in one step
+constexpr double kCornerReached = 0.02;    // m before a corner at which the turn begins
+constexpr double kStraightInto = 1.0;      // m before a passage, from where the way is straight
+constexpr double kBendInto = from_deg(4);  // that is turned on the spot there
 
-std::vector<double> stops_of(const Path& path, double corner) {
+bool leads_into(double station, const std::vector<Passage>& passages) {
+  return std::any_of(passages.begin(), passages.end(), [station](const Passage& passage) {
+    return station >= passage.begin_m - kStraightInto && station <= passage.end_m;
+  });
+}
+
+std::vector<double> stops_of(const Path& path, double corner,
+                             const std::vector<Passage>& passages) {
   std::vector<double> stops;
   const auto& points = path.points();
   for (std::size_t i = 1; i + 1 < points.size(); ++i) {
     const Eigen::Vector2d in = points[i] - points[i - 1];
     const Eigen::Vector2d out = points[i + 1] - points[i];
     const double bend = std::atan2(cross(in, out), in.dot(out));
-    if (std::abs(bend) > corner) stops.push_back(path.stations()[i]);
+    const double sharp = leads_into(path.stations()[i], passages) ? kBendInto : corner;
+    if (std::abs(bend) > sharp) stops.push_back(path.stations()[i]);
   }
   stops.push_back(path.length());
   return stops;
@@ -27,11 +37,12 @@ std::vector<double> stops_of(const Path& path, double corner) {
 
 }  // namespace
 
-PathFollower::PathFollower(Path path, BaseLimits limits, PathFollowerParams params)
+PathFollower::PathFollower(Path path, BaseLimits limits, PathFollowerParams params,
+                           const std::vector<Passage>& passages)
     : path_(std::move(path)),
       limits_(limits),
       params_(params),
-      stops_(stops_of(path_, from_deg(params.corner_deg))),
+      stops_(stops_of(path_, from_deg(params.corner_deg), passages)),
       pursuit_(limits, from_deg(params.turn_in_place_deg)) {}
 
 void PathFollower::skip_to(double station) {

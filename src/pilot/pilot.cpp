@@ -4,6 +4,7 @@
 #include "executor.hpp"
 #include "known_walls.hpp"
 #include "lanes.hpp"
+#include "passage_guard.hpp"
 #include "supervisor.hpp"
 
 #include <algorithm>
@@ -85,14 +86,21 @@ struct Pilot::Impl {
         robot_radius_m(radius),
         limits(base),
         params(p),
-        follower(std::move(path), base, p.follower),
+        guard(floor, radius, base, p.ring),
+        follower(start_of(std::move(path))),
         memory(p.ring),
         lanes(floor, radius, p.avoidance),
         executor(radius, base, p.avoidance),
         detour_pursuit(base, from_deg(p.follower.turn_in_place_deg)) {}
 
+  /// A follower of @p path, whose passages the guard knows.
+  PathFollower start_of(Path path) {
+    guard.follow(path);
+    return {std::move(path), limits, params.follower, guard.passages()};
+  }
   void look(const PilotInput& input);
-  void plan_detour(const PilotInput& input, const std::vector<RoundObstacle>& things);
+  void plan_detour(const PilotInput& input, const Pose2& base,
+                   const std::vector<RoundObstacle>& things);
   void drop_detour();
   BaseRates avoid(const Pose2& base);
   void keep_station(const Pose2& base, const Blockade& blockade);
@@ -104,6 +112,7 @@ struct Pilot::Impl {
   double robot_radius_m;
   BaseLimits limits;
   PilotParams params;
+  PassageGuard guard;
   PathFollower follower;
   EchoMemory memory;
   Lanes lanes;
@@ -129,8 +138,8 @@ void Pilot::Impl::look(const PilotInput& input) {
   if (input.scan == nullptr || (scanned && *scanned == input.scan->stamp)) return;
   scanned = input.scan->stamp;
   const RangeScan& scan = *input.scan;
-  const PoseDoubt doubt{input.belief.position_sigma(),
-                        std::sqrt(std::max(input.belief.covariance(2, 2), 0.0))};
+  const Pose2& base = guard.base(input.belief);
+  const PoseDoubt doubt = guard.doubt(input.belief);
   hazards.clear();
   unexplained.assign(scan.readings.size(), 0);
   for (std::size_t i = 0; i < scan.readings.size(); ++i) {
@@ -138,8 +147,8 @@ void Pilot::Impl::look(const PilotInput& input) {
     if (!reading.echo || reading.range_m > params.ring.horizon_m) continue;
     const double sigma =
         std::hypot(params.ring.sigma_m, params.ring.sigma_relative * reading.range_m);
-    const bool known = explained(reading, *plan, input.belief.pose, doubt,
-                                 from_deg(params.ring.half_angle_deg), sigma);
+    const bool known =
+        explained(reading, *plan, base, doubt, from_deg(params.ring.half_angle_deg), sigma);
     unexplained[i] = known ? 0 : 1;
     hazards.push_back({reading.range_m * unit_vector(reading.bearing), known});
   }
@@ -157,13 +166,14 @@ std::vector<RoundObstacle> Pilot::Impl::things(const Pose2& base) const {
   return result;
 }
 
-void Pilot::Impl::plan_detour(const PilotInput& input, const std::vector<RoundObstacle>& things) {
+void Pilot::Impl::plan_detour(const PilotInput& input, const Pose2& base,
+                              const std::vector<RoundObstacle>& things) {
   const Duration every = Duration::from_seconds(kSearchEvery);
   if (searched && input.now - *searched < every) return;
   searched = input.now;
   const double beside = params.avoidance.beside_m * (evading ? kNearerOnDetour : 1.0);
-  const auto found = lanes.search(follower.path(), follower.station(), input.belief.pose.position(),
-                                  things, beside);
+  const auto found =
+      lanes.search(follower.path(), follower.station(), base.position(), things, beside);
   detour.reset();
   if (found) detour.emplace(*found);
 }
@@ -227,9 +237,10 @@ Pilot& Pilot::operator=(Pilot&&) noexcept = default;
 PilotOutput Pilot::step(const PilotInput& input) {
   Impl& self = *impl_;
   const AvoidanceParams& avoidance = self.params.avoidance;
-  const Pose2& base = input.belief.pose;
   const double dt = self.stepped ? (input.now - *self.stepped).seconds() : 0.0;
   self.stepped = input.now;
+  self.guard.sense(input, self.follower.station());
+  const Pose2 base = self.guard.base(input.belief);
   self.look(input);
 
   const auto things = self.things(base);
@@ -239,7 +250,7 @@ PilotOutput Pilot::step(const PilotInput& input) {
   const bool blocked = std::isfinite(blockade.ahead_m);
   if (self.evading) self.keep_station(base, blockade);
   if (blocked || self.evading || self.lasted_s > 0.0)
-    self.plan_detour(input, things);
+    self.plan_detour(input, base, things);
   else
     self.drop_detour();
 
@@ -251,6 +262,10 @@ PilotOutput Pilot::step(const PilotInput& input) {
   const Activations& a = output.activations;
   if (a.avoid > 0.5) self.evading = true;
 
+  const PassageOrder order = input.hold
+                                 ? PassageOrder{self.limits.speed, false, std::nullopt}
+                                 : self.guard.order(input.belief, self.follower.station(), dt);
+  output.refused = order.refused;
   BaseRates fused;
   if (a.follow > 0.0 && !self.evading) {
     const BaseRates follow = self.follower.step(base);
@@ -260,7 +275,10 @@ PilotOutput Pilot::step(const PilotInput& input) {
     const BaseRates avoid = self.avoid(base);
     fused = {fused.v + a.avoid * avoid.v, fused.w + a.avoid * avoid.w};
   }
-  output.rates = self.executor.execute(fused, self.hazards);
+  if (order.hold) fused = {};
+  if (fused.v > order.speed) fused = {order.speed, fused.w * order.speed / fused.v};
+  output.rates = self.executor.execute(
+      fused, self.guard.hazards(self.hazards, self.memory, input.belief), self.guard.beside_m());
   const bool cut = output.rates.v < kStands && fused.v > kStands;
   self.lasted_s =
       std::clamp(self.lasted_s + (blocked || cut ? dt : -2.0 * dt), 0.0, avoidance.patience_s);
@@ -272,7 +290,7 @@ PilotOutput Pilot::step(const PilotInput& input) {
 
 void Pilot::follow(Path path) {
   Impl& self = *impl_;
-  self.follower = PathFollower(std::move(path), self.limits, self.params.follower);
+  self.follower = self.start_of(std::move(path));
   self.drop_detour();
   self.evading = false;
   self.lasted_s = 0.0;

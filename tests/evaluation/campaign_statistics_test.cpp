@@ -57,6 +57,20 @@ TEST(CampaignStatistics, DifferencesArePairedBySeed) {
   EXPECT_NEAR(statistics[0].means.front().value, 0.05, 1e-12);
 }
 
+TEST(CampaignStatistics, AFalseAlarmIsNoLossThatWasSaidInTime) {
+  auto scores = two_arms_scores();
+  scores[0][0].localizers["ekf"].lost = {{1.0, std::nullopt, 5.0, true},
+                                         {6.0, std::nullopt, 7.0, true}};
+  scores[0][2].localizers["ekf"].lost = {{4.0, 3.0, std::nullopt}, {5.0, 6.0, 9.0, true}};
+  const auto losses = campaign_statistics(two_arms(), scores)[0].over_seeds.losses;
+  EXPECT_EQ(losses.false_alarms, 2);
+  EXPECT_EQ(losses.losses, 2);
+  EXPECT_EQ(losses.announced, 1);
+  EXPECT_EQ(losses.beyond, 2);
+  EXPECT_EQ(losses.drives_without, 2);
+  EXPECT_NEAR(losses.announced_share.high, clopper_pearson(1, 2).high, 1e-12);
+}
+
 TEST(CampaignStatistics, CountsWhatWasAnnouncedAndWhatEnded) {
   auto scores = two_arms_scores();
   scores[0][0].localizers["ekf"].lost = {{1.0, 2.0, 5.0}, {8.0, std::nullopt, 9.0}};
@@ -114,8 +128,10 @@ TEST(CampaignReport, OfOneArmSaysTheSame) {
   campaign.baseline = 0;
   std::vector<std::vector<DriveScore>> scores{two_arms_scores()[0]};
   scores[0][0].localizers["ekf"].lost = {{1.0, 2.0, 5.0}};
-  EXPECT_THAT(campaign_text(campaign, campaign_statistics(campaign, scores)),
-              HasSubstr("times lost 1, said before 50 cm 1/1 [2.5, 100.0] %, found again 1/1"));
+  EXPECT_THAT(
+      campaign_text(campaign, campaign_statistics(campaign, scores)),
+      HasSubstr("times lost 1 (1 beyond 50 cm), said before 50 cm 1/1 [2.5, 100.0] %, found again "
+                "1/1"));
 }
 
 TEST(CampaignReport, HasOneRowAnArmSeedAndLocalizer) {
@@ -158,13 +174,13 @@ TEST(WorstMissions, AreThoseThatDidNotArriveThenThoseWithTheLargestErrors) {
 
 TEST(LossWatch, OpensWhenItSaysSoAndClosesWhenItTracksWithASmallError) {
   std::vector<LostEpisode> episodes;
-  update_episodes(episodes, 1.0, false, 0.4);
+  update_episodes(episodes, 1.0, false, 0.4, 0.05);
   EXPECT_TRUE(episodes.empty());
-  update_episodes(episodes, 2.0, true, 0.4);
-  update_episodes(episodes, 3.0, true, 0.6);
-  update_episodes(episodes, 4.0, false, 0.3);
-  update_episodes(episodes, 5.0, false, 0.2);
-  update_episodes(episodes, 6.0, false, 0.4);
+  update_episodes(episodes, 2.0, true, 0.4, 0.05);
+  update_episodes(episodes, 3.0, true, 0.6, 0.05);
+  update_episodes(episodes, 4.0, false, 0.3, 0.05);
+  update_episodes(episodes, 5.0, false, 0.2, 0.05);
+  update_episodes(episodes, 6.0, false, 0.4, 0.05);
   ASSERT_EQ(episodes.size(), 1u);
   EXPECT_EQ(episodes[0].said_s, 2.0);
   EXPECT_EQ(episodes[0].passed_s, 3.0);
@@ -175,17 +191,42 @@ TEST(LossWatch, OpensWhenItSaysSoAndClosesWhenItTracksWithASmallError) {
 
 TEST(LossWatch, AnErrorThatPassesUnsaidIsNotAnnounced) {
   std::vector<LostEpisode> episodes;
-  update_episodes(episodes, 1.0, false, 0.51);
-  update_episodes(episodes, 2.0, true, 0.7);
+  update_episodes(episodes, 1.0, false, 0.51, 0.05);
+  update_episodes(episodes, 2.0, true, 0.7, 0.05);
   ASSERT_EQ(episodes.size(), 1u);
   EXPECT_FALSE(episodes[0].announced());
   EXPECT_EQ(episodes[0].began_s(), 1.0);
   EXPECT_FALSE(episodes[0].ended_s);
 }
 
+TEST(LossWatch, SayingSoWithoutAReasonIsAFalseAlarmUnlessTheErrorPassesLater) {
+  std::vector<LostEpisode> episodes;
+  update_episodes(episodes, 1.0, true, 0.1, 0.05);
+  EXPECT_TRUE(episodes.at(0).false_alarm());
+  EXPECT_FALSE(episodes.at(0).announced());
+  update_episodes(episodes, 2.0, true, 0.51, 0.05);
+  EXPECT_FALSE(episodes.at(0).false_alarm());
+  EXPECT_TRUE(episodes.at(0).announced());
+}
+
+TEST(LossWatch, AnErrorThatTheClaimedSigmaAllowsForIsNoLoss) {
+  std::vector<LostEpisode> episodes;
+  update_episodes(episodes, 1.0, false, 0.8, 0.3);
+  EXPECT_TRUE(episodes.empty());
+  update_episodes(episodes, 2.0, false, 1.3, 0.3);
+  EXPECT_EQ(episodes.size(), 1u);
+}
+
+TEST(LossWatch, SayingSoBeyondFourSigmasIsNoFalseAlarm) {
+  std::vector<LostEpisode> episodes;
+  update_episodes(episodes, 1.0, true, 0.3, 0.05);
+  EXPECT_FALSE(episodes.at(0).false_alarm());
+  EXPECT_TRUE(episodes.at(0).announced());
+}
+
 TEST(LossWatch, SayingSoAtTheInstantItPassesCounts) {
   std::vector<LostEpisode> episodes;
-  update_episodes(episodes, 1.0, true, 0.51);
+  update_episodes(episodes, 1.0, true, 0.51, 0.05);
   EXPECT_TRUE(episodes.at(0).announced());
 }
 

@@ -70,9 +70,39 @@ TEST(LossScore, AnErrorOfFourClaimedSigmasThatIsNeverSaidIsAMiss) {
 
 TEST(LossScore, AMissThatLastsToTheEndOfTheDriveCounts) {
   Story story;
-  story.run(10, BeliefStatus::tracking, 0.8, 0.4);
+  story.run(10, BeliefStatus::tracking, 0.8, 0.1);
   EXPECT_EQ(story.score().misses, 1);
   EXPECT_EQ(story.score().misses_over_half_metre, 1);
+}
+
+TEST(LossScore, AnErrorThatAnHonestLargeSigmaAllowsForIsNoMissAndNoWrongRecovery) {
+  Story story;
+  story.run(10, BeliefStatus::tracking, 0.8, 0.3);
+  story.run(10, BeliefStatus::lost, 0.8, 0.3);
+  story.run(10, BeliefStatus::tracking, 0.8, 0.3);
+  const LossScore score = story.score();
+  EXPECT_EQ(score.misses + score.said, 0);
+  EXPECT_EQ(score.unsaid_s, 0.0);
+  EXPECT_EQ(score.false_alarms, 0);
+  EXPECT_EQ(score.right_recoveries, 1);
+  EXPECT_EQ(score.wrong_recoveries, 0);
+}
+
+TEST(LossScore, OfAClaimNoMoreThanHalfAMetreIsBelieved) {
+  Story story;
+  story.run(10, BeliefStatus::tracking, 2.1, 3.0);
+  EXPECT_EQ(story.score().misses, 1);
+}
+
+TEST(LossScore, AnAlarmIsNoFalseOneIfTheErrorPassesHalfAMetreBeforeItTracksAgain) {
+  Story story;
+  story.run(10, BeliefStatus::tracking, 0.03);
+  story.run(10, BeliefStatus::lost, 0.03);
+  story.run(10, BeliefStatus::lost, 0.6);
+  story.run(10, BeliefStatus::tracking, 0.03);
+  EXPECT_EQ(story.score().false_alarms, 0);
+  ASSERT_EQ(story.scorer.episodes().size(), 1u);
+  EXPECT_TRUE(story.scorer.episodes().front().announced());
 }
 
 TEST(LossScore, TheDelayIsFromGoingAstrayToSayingSo) {

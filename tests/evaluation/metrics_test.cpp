@@ -132,6 +132,15 @@ TEST(Metrics, ClopperPearsonGivesTheTabulatedIntervals) {
   EXPECT_NEAR(clopper_pearson(5, 10).high, 0.8129, 1e-4);
 }
 
+TEST(Metrics, APoissonMeanHasTheTabulatedInterval) {
+  // None: 0 to −ln 0.025.
+  EXPECT_EQ(poisson_mean(0).low, 0.0);
+  EXPECT_NEAR(poisson_mean(0).high, -std::log(0.025), 1e-12);
+  // 10: 4.795 to 18.390.
+  EXPECT_NEAR(poisson_mean(10).low, 4.795, 1e-3);
+  EXPECT_NEAR(poisson_mean(10).high, 18.390, 1e-3);
+}
+
 TEST(Metrics, PairedDifferenceUsesThePairs) {
   // Differences 1, 2, 3: mean 2, standard error 1/√3, t(2 dof, 97.5 %) = 4.3027.
   const Estimate d = paired_difference({11.0, 22.0, 33.0}, {10.0, 20.0, 30.0});

@@ -99,6 +99,21 @@ TEST_F(BlockedRoute, WithNobodyInItIsDrivenAsPlanned) {
   EXPECT_EQ(say_.hold, 0.0);
 }
 
+TEST_F(BlockedRoute, APointToPassOnWhichSomebodyStandsIsToldToBeMissed) {
+  const MissionSetup setup = hall({"route.via_m=[[3.1, 0.6]]"});
+  EXPECT_EQ(drive(setup, 4), Outcome::arrived);
+  const auto missed = told("via_missed");
+  ASSERT_EQ(missed.size(), 1U);
+  EXPECT_NEAR(missed[0]["x_m"], 3.1, 1e-9);
+  EXPECT_GT(missed[0]["nearest_m"], 0.27);
+}
+
+TEST_F(BlockedRoute, PointsThatWerePassedAreNotToldToBeMissed) {
+  EXPECT_EQ(drive(hall({"disturbances.people=off", "route.via_m=[[3.1, 0.6], [5, 0.6]]"}), 4),
+            Outcome::arrived);
+  EXPECT_TRUE(told("via_missed").empty());
+}
+
 TEST_F(BlockedRoute, WithoutAnotherWayIsGivenUp) {
   // A wall closes the way round the back.
   const MissionSetup setup =

@@ -25,8 +25,8 @@ Path along_walls() {
 }
 
 TEST(Pilot, WithNothingUnknownTheDriveIsThatOfThePathFollowerToTheLastBit) {
-  RingDrive seeing(hall_with_door(0.74), along_walls(), {0.42, 5.0, from_deg(-90)});
-  RingDrive blind(hall_with_door(0.74), along_walls(), {0.42, 5.0, from_deg(-90)});
+  RingDrive seeing(hall_with_door(0.86), along_walls(), {0.42, 5.0, from_deg(-90)});
+  RingDrive blind(hall_with_door(0.86), along_walls(), {0.42, 5.0, from_deg(-90)});
   blind.ring = false;
   // As wrong as a belief of this covariance (2 cm, 0.6°) is on a bad day.
   seeing.belief_error = blind.belief_error = {0.03, -0.03, from_deg(1.0)};

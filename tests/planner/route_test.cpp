@@ -117,6 +117,21 @@ TEST(Route, PassesADoorThatLeavesLessThanTheClearance) {
   }
 }
 
+TEST(Route, GoesStraightThroughTheMiddleOfANarrowDoor) {
+  for (const double width : {0.66, 0.75, 0.85}) {
+    const FloorPlan plan(
+        kOutline, 2.8,
+        {{{6.0, 0.0}, {6.0, 3.0 - 0.5 * width}, 2.8}, {{6.0, 3.0 + 0.5 * width}, {6.0, 7.0}, 2.8}},
+        {});
+    const Route route = route_in(plan, {{2.0, 0.6}, {10.0, 5.4}});
+    ASSERT_EQ(route.status, RouteStatus::found);
+    EXPECT_NEAR(path_clearance(plan, route.path), 0.5 * width, 1e-6) << width;
+    for (const Vector2d& p : route.path.points())
+      EXPECT_TRUE(std::abs(p.x() - 6.0) > 0.5 || std::abs(p.y() - 3.0) < 1e-6)
+          << width << ", " << p.x();
+  }
+}
+
 TEST(Route, StartsAndEndsNearAWallButSoonKeepsTheClearance) {
   const FloorPlan plan(kOutline, 2.8, {}, {});
   const Route route = route_in(plan, {{0.35, 1.0}, {0.35, 6.0}});

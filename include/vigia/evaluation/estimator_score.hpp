@@ -19,20 +19,6 @@ struct LookScore {
   double bound_m2 = 0.0;          ///< trace of the bound's position covariance
 };
 
-/// A time during which a localizer was lost: from when it said so or its error passed kLost_m,
-/// whichever came first, until it tracks again with an error of less than half of that.
-struct LostEpisode {
-  /// An error of the position that nobody would call localized, m.
-  static constexpr double kLost_m = LossScorer::kAstray_m;
-
-  std::optional<double> said_s;    ///< when its belief's status became lost
-  std::optional<double> passed_s;  ///< when its error passed kLost_m
-  std::optional<double> ended_s;
-  double began_s() const;
-  /// Whether it had said so by the time the error passed kLost_m, if it ever did.
-  bool announced() const { return said_s && (!passed_s || *said_s <= *passed_s); }
-};
-
 /// One localizer on one drive. Means are over the ticks of the drive. Without the truth only the
 /// counts and lost_s are known.
 struct LocalizerScore {

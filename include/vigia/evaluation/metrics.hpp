@@ -74,6 +74,9 @@ Estimate pcrlb_ratio(const std::vector<double>& squared_errors, const std::vecto
 /// The exact interval of a share of which @p successes of @p trials were seen.
 Interval clopper_pearson(int successes, int trials, double confidence = 0.95);
 
+/// The exact interval of the mean of a Poisson variable of which @p count was seen (Garwood 1936).
+Interval poisson_mean(int count, double confidence = 0.95);
+
 /// Mean of a[i] − b[i] over paired runs with its 95 % interval by Student's t. At least two pairs;
 /// throws std::invalid_argument.
 Estimate paired_difference(const std::vector<double>& a, const std::vector<double>& b);

@@ -27,11 +27,18 @@ struct LocalizerStatistics {
 /// What became of a localizer's getting lost (see LostEpisode), over all drives.
 struct LossStatistics {
   int episodes = 0;
-  int announced = 0;         ///< said before the error passed LostEpisode::kLost_m, if it ever did
-  Interval announced_share;  ///< Clopper–Pearson, 95 %; [0, 1] without episodes
-  int ended = 0;             ///< it found itself again before the drive was over
-  Interval ended_share;      ///< as announced_share
-  double mean_lost_s = 0.0;  ///< of those that ended
+  int false_alarms = 0;           ///< episodes that were no losses
+  Estimate false_alarms_per_km;   ///< exact Poisson interval; [0, ∞] of a robot that stood
+  int drives_without = 0;         ///< a false alarm
+  Interval drives_without_share;  ///< Clopper–Pearson, 95 %
+  int losses = 0;                 ///< the other episodes
+  int beyond = 0;                 ///< of these: the error did pass LostEpisode::kLost_m
+  int announced = 0;              ///< of these: said before the error passed LostEpisode::kLost_m
+  Interval announced_share;       ///< Clopper–Pearson, 95 %; [0, 1] without losses
+  int ended = 0;                 ///< episodes after which it found itself before the drive was over
+  Interval ended_share;          ///< as announced_share, of the episodes
+  double mean_lost_s = 0.0;      ///< of those that ended
+  double ambiguous_share = 0.0;  ///< of the time
 };
 
 struct SeedStatistics {

@@ -31,6 +31,8 @@ enum class EventKind {
   rejoined,       ///< … and is back on the path
   blocked,        ///< the path stays blocked
   replan,         ///< another route is followed
+  refused,        ///< a passage is too narrow for what is known of the robot's place
+  via_missed,     ///< a point to pass lies behind, and the robot believes not to have passed it
   kidnapped,      ///< the world has put the robot elsewhere
   arrived,        ///< this and what follows: how the mission ended
   collided,

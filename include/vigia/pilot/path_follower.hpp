@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "vigia/core/actuation.hpp"
+#include "vigia/core/passage.hpp"
 #include "vigia/core/path.hpp"
 #include "vigia/core/pose.hpp"
 #include "vigia/pilot/pursuit.hpp"
@@ -24,7 +25,10 @@ struct PathFollowerParams {
 /// followed in its order.
 class PathFollower {
  public:
-  PathFollower(Path path, BaseLimits limits, PathFollowerParams params);
+  /// Into one of @p passages the path is followed straight: any bend before it is turned on the
+  /// spot.
+  PathFollower(Path path, BaseLimits limits, PathFollowerParams params,
+               const std::vector<Passage>& passages = {});
 
   /// The rates for now; zero once arrived().
   BaseRates step(const Pose2& estimate);

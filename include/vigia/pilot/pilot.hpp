@@ -40,6 +40,16 @@ struct PilotInput {
   bool hold = false;                ///< stand still: somebody looks
 };
 
+/// A passage of the path into which the robot does not go.
+struct PassageRefusal {
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();
+  double width_m = 0.0;
+  double beside_m = 0.0;  ///< of a robot in its middle
+  double sigma_m = 0.0;   ///< of the robot's place across it, as good as it became
+  /// It would do, but the robot stands aside of its middle: another path may lead in straight.
+  bool misaligned = false;
+};
+
 struct PilotOutput {
   BaseRates rates;
   PilotStatus status = PilotStatus::driving;
@@ -47,6 +57,8 @@ struct PilotOutput {
   double station_m = 0.0;
   /// The unknown obstacle that blocks the path nearest ahead, if any.
   std::optional<Eigen::Vector2d> obstacle_ahead;
+  /// Said for one step; the robot stands before it.
+  std::optional<PassageRefusal> refused;
 };
 
 /// Drives the base along a path and round what stands in it, after the AFREB architecture (Salichs,
