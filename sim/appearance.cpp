@@ -13,6 +13,8 @@
 namespace vigia::sim {
 namespace {
 
+constexpr double kMinPitch_m = 0.5;  // of what is rendered one by one
+
 const std::vector<std::string> kKinds{"blob", "ellipse", "ring", "square", "half_disc"};
 const Bounds kGrey{0.0, 255.0};
 
@@ -104,9 +106,13 @@ void describe_ceiling_looks(ParamVisitor& v, Appearance& a) {
            "share of the cells that have a second patch, anywhere in them");
   v.number("lamp_pitch_m", a.lamp_pitch_m, {0.0, 100.0},
            "between lamps of 1.2 by 0.2 m on the ceiling; 0: none");
+  v.require(a.lamp_pitch_m == 0.0 || a.lamp_pitch_m >= kMinPitch_m, "lamp_pitch_m",
+            "must be 0, or 0.5 or more");
   v.number("lamp_grey", a.lamp_grey, kGrey, "of those lamps");
   v.number("pipe_pitch_m", a.pipe_pitch_m, {0.0, 100.0},
            "between pipes of 0.1 m along x that hang below the ceiling; 0: none");
+  v.require(a.pipe_pitch_m == 0.0 || a.pipe_pitch_m >= kMinPitch_m, "pipe_pitch_m",
+            "must be 0, or 0.5 or more");
   v.number("pipe_drop_m", a.pipe_drop_m, {0.0, 5.0}, "of their lower side below the ceiling");
 }
 

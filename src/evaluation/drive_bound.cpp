@@ -92,7 +92,7 @@ void DriveBound::follow(const FlowObservation& flow) {
     states_.ceiling->predict(whole.u, shift);
   }
   if (const auto refined =
-          localization::joined_with_flow(parts, shift, setup_.ceiling->camera, params))
+          localization::joined_with_flow(parts, shift, setup_.ceiling->camera, params, trust_))
     whole.u = *refined;
   states_.move_looks_and_corners(whole, setup_.odometry);
 }

@@ -28,6 +28,8 @@ constexpr double kCalming = 0.9;                        // a tick
 constexpr double kLoneDoubt = 0.1;  // that a lone patch which fits a wide prediction is none
 constexpr double kFlowSlack_m = 0.01;
 constexpr double kAtRest = 1e-7;
+constexpr int kHeadingWraps = 3;               // turns each way
+constexpr double kSlightTurn = from_deg(3.0);  // σ of a fix's heading beside the prediction's
 
 Eigen::Matrix2d world_to_robot(double theta) {
   return Eigen::Rotation2Dd(-theta).toRotationMatrix();
@@ -64,6 +66,8 @@ void CeilingFilter::reset(Stamp stamp, const Prior& prior) {
   unknown_s_ = 0.0;
   lively_Q_.setZero();
   lone_.reset();
+  turned_ = 0.0;
+  flow_trust_ = {};
   refresh_belief();
 }
 
@@ -128,8 +132,10 @@ void CeilingFilter::predict(const ImageShift& shift, Stamp to) {
 
 bool CeilingFilter::predict(const OdometryIncrement& u, const ImageShift& shift) {
   FlowMotion motion = seen_motion(shift);
+  const Eigen::Matrix3d errors = P_.block<3, 3>(3, 3);
+  const bool trusted = flow_trust_.holds(u, params_.odometry, motion, errors, params_.gate);
   const auto fused = fuse_motions(u, params_.odometry, motion, params_.gate);
-  if (!fused) {
+  if (!trusted || !fused) {
     predict(u);
     return false;
   }
@@ -199,26 +205,76 @@ std::vector<CeilingFilter::Seen> CeilingFilter::associated(const std::vector<See
   return result;
 }
 
-/// The prediction, or where it is wide the pose by one of the patches with which most agree.
-Pose2 CeilingFilter::point_of_linearisation(const std::vector<Seen>& seen) const {
-  if (!wide()) return pose();
-  Pose2 best = pose();
-  std::size_t most = 0;
-  for (const Seen& reference : seen) {
-    const double off = direction_difference(-pose().theta, reference.patch.psi, reference.directed);
-    Pose2 at = pose();
-    at.theta = wrap_angle(pose().theta + off);
-    const Eigen::Vector2d turned = world_to_robot(-at.theta) * reference.patch.q;
-    const Eigen::Vector2d p =
-        cell_centre(grid_, nearest_cell(grid_, pose().position() + turned)) - turned;
-    at.x = p.x();
-    at.y = p.y();
-    const std::size_t agree = associated(seen, at).size();
-    if (agree <= most) continue;
-    most = agree;
-    best = at;
+/// The pose that a patch of the nearest cell gives, taken as it is seen or turned.
+Pose2 CeilingFilter::placed_by(const Seen& reference, double turn) const {
+  const double off = direction_difference(-pose().theta, reference.patch.psi, reference.directed);
+  Pose2 at = pose();
+  at.theta = wrap_angle(pose().theta + off + turn);
+  const Eigen::Vector2d turned = world_to_robot(-at.theta) * reference.patch.q;
+  const Eigen::Vector2d p =
+      cell_centre(grid_, nearest_cell(grid_, pose().position() + turned)) - turned;
+  at.x = p.x();
+  at.y = p.y();
+  return at;
+}
+
+/// Of the prediction, up to a constant; the heading's normal density wrapped round the circle.
+double CeilingFilter::log_prior(const Pose2& at) const {
+  const Eigen::Vector2d off = at.position() - pose().position();
+  Eigen::Matrix2d P = P_.topLeftCorner<2, 2>();
+  P.diagonal().array() += kPatchAgrees_m * kPatchAgrees_m;
+  const double turn = wrap_angle(at.theta - pose().theta);
+  double heading = 0.0;
+  for (int k = -kHeadingWraps; k <= kHeadingWraps; ++k) {
+    const double wrapped = turn + 2.0 * kPi * k;
+    heading += std::exp(-0.5 * wrapped * wrapped / (P_(2, 2) + kSlightTurn * kSlightTurn));
   }
-  return best;
+  return std::log(heading + std::numeric_limits<double>::min()) -
+         0.5 * off.dot(P.ldlt().solve(off));
+}
+
+/// The prediction, or where it is wide the pose by one of the patches with which most agree, of
+/// several the likeliest. Patches that do not tell their ends apart are tried both ways.
+CeilingFilter::Start CeilingFilter::point_of_linearisation(const std::vector<Seen>& seen) const {
+  Start start{pose()};
+  if (!wide()) return start;
+  struct Candidate {
+    Pose2 pose;
+    std::size_t agree = 0;
+    double log_prior = 0.0;
+  };
+  std::vector<Candidate> candidates;
+  std::size_t most = 1;
+  for (const Seen& reference : seen) {
+    for (const double turn : {0.0, kPi}) {
+      if (turn != 0.0 && reference.directed) continue;
+      const Pose2 at = placed_by(reference, turn);
+      candidates.push_back({at, associated(seen, at).size(), log_prior(at)});
+      most = std::max(most, candidates.back().agree);
+    }
+  }
+  const Candidate* best = nullptr;
+  for (const Candidate& one : candidates)
+    if (one.agree == most && (best == nullptr || one.log_prior > best->log_prior)) best = &one;
+  if (best == nullptr) return start;
+  start.pose = best->pose;
+  const Candidate* other = nullptr;
+  for (const Candidate& one : candidates) {
+    const bool turned = std::cos(one.pose.theta - best->pose.theta) < 0.0;
+    if (one.agree == most && turned && (other == nullptr || one.log_prior > other->log_prior))
+      other = &one;
+  }
+  if (other == nullptr) return start;
+  start.turned = 1.0 / (1.0 + std::exp(best->log_prior - other->log_prior));
+  start.about = 0.5 * (best->pose.position() + other->pose.position());
+  return start;
+}
+
+/// The robot faced the other way than believed, or the fix does, or both and so neither.
+void CeilingFilter::note_turn(const Start& start) {
+  if (start.turned <= kNegligible) return;
+  turned_ = turned_ * (1.0 - start.turned) + (1.0 - turned_) * start.turned;
+  turned_about_ = start.about;
 }
 
 /// Whether the camera shows all of a cell's patch, @p margin_px from the border or more.
@@ -430,6 +486,7 @@ void CeilingFilter::doubt() {
 void CeilingFilter::shift_by(CeilingCell shift) {
   if (shift == CeilingCell{}) return;
   x_.head<2>() += cell_centre(grid_, shift);
+  turned_about_ += cell_centre(grid_, shift);
   std::map<CeilingCell, Eigen::Index> patches;
   for (const auto& [cell, place] : patches_) patches[{cell.i + shift.i, cell.j + shift.j}] = place;
   patches_ = std::move(patches);
@@ -495,10 +552,10 @@ CeilingUpdate CeilingFilter::update(const std::vector<PatchImage>& patches) {
   std::vector<Seen> seen = see(patches);
   if (seen.empty()) return CeilingUpdate::none_seen;
   const int contradicts = seen.size() > 1 ? kSingle : 1;
-  const Pose2 start = point_of_linearisation(seen);
-  seen = associated(seen, start);
-  hold(seen, start, open());
-  const std::vector<Seen> passed = passed_gate(seen, start);
+  const Start start = point_of_linearisation(seen);
+  seen = associated(seen, start.pose);
+  hold(seen, start.pose, open());
+  const std::vector<Seen> passed = passed_gate(seen, start.pose);
   if (passed.empty()) {
     gated_ += contradicts;
     if (gated_ >= kSingle * params_.max_gated) doubt();
@@ -507,7 +564,8 @@ CeilingUpdate CeilingFilter::update(const std::vector<PatchImage>& patches) {
   }
   gated_ = 0;
   note_lone_patch(passed);
-  const Eigen::VectorXd at = converged(passed, start);
+  note_turn(start);
+  const Eigen::VectorXd at = converged(passed, start.pose);
   const Linearised all = linearise(passed, at);
   weigh_shifts(all, seen, Pose2::from_vector(at.head<3>()));
   fuse(all);
@@ -544,15 +602,25 @@ void CeilingFilter::refresh_belief() {
   belief_.stamp = stamp_;
   belief_.pose = pose();
   belief_.covariance = P_.topLeftCorner<3, 3>();
+  const double mount = params_.mount_sigma_m * params_.mount_sigma_m;
+  const double yaw = params_.mount_yaw_sigma * params_.mount_yaw_sigma;
+  belief_.covariance.diagonal() += Eigen::Vector3d(mount, mount, yaw);
   belief_.hypotheses.clear();
   const double best = shifts_[CeilingCell{}];
-  const bool unsure = best < params_.sure || open() || lone_;
+  const bool unsure = best * (1.0 - turned_) < params_.sure || open() || lone_;
   belief_.status = unsure ? BeliefStatus::ambiguous : BeliefStatus::tracking;
-  belief_.lost_probability = std::max(1.0 - best, lone_ ? kLoneDoubt : 0.0);
+  belief_.lost_probability = std::max(1.0 - best * (1.0 - turned_), lone_ ? kLoneDoubt : 0.0);
   if (belief_.status == BeliefStatus::tracking) return;
   for (const auto& [shift, weight] : shifts_) {
     const Eigen::Vector2d p = belief_.pose.position() + cell_centre(grid_, shift);
-    belief_.hypotheses.push_back({{p.x(), p.y(), belief_.pose.theta}, belief_.covariance, weight});
+    const double as_believed = weight * (1.0 - turned_);
+    belief_.hypotheses.push_back(
+        {{p.x(), p.y(), belief_.pose.theta}, belief_.covariance, as_believed});
+    if (turned_ <= kNegligible) continue;
+    const Eigen::Vector2d q = 2.0 * turned_about_ - p;
+    belief_.hypotheses.push_back({{q.x(), q.y(), wrap_angle(belief_.pose.theta + kPi)},
+                                  belief_.covariance,
+                                  weight * turned_});
   }
 }
 

@@ -15,15 +15,18 @@ constexpr double kFlowWait_s = 0.5;  // for a flow, at most
 std::optional<OdometryIncrement> joined_with_flow(const std::vector<OdometryIncrement>& parts,
                                                   const ImageShift& shift,
                                                   const CeilingCamera& camera,
-                                                  const CeilingFilterParams& params) {
+                                                  const CeilingFilterParams& params,
+                                                  FlowTrust& trust) {
   const double tilt = params.tilt_sigma * params.tilt_sigma;
   const double height = params.height_sigma * params.height_sigma;
   FlowMotion seen = flow_motion(camera, shift, {}, 2.0 * tilt, params.flow_floor);
   const Eigen::Vector3d errors(tilt, tilt, height);
-  seen.covariance += seen.derrors * errors.asDiagonal() * seen.derrors.transpose();
   const OdometryIncrement read = joined(parts);
+  const bool trusted =
+      trust.holds(read, params.odometry, seen, errors.asDiagonal().toDenseMatrix(), params.gate);
+  seen.covariance += seen.derrors * errors.asDiagonal() * seen.derrors.transpose();
   const auto fused = fuse_motions(read, params.odometry, seen, params.gate);
-  if (!fused) return std::nullopt;
+  if (!trusted || !fused) return std::nullopt;
   return as_increment(*fused, read);
 }
 
@@ -35,6 +38,7 @@ FlowFedLocalizer::FlowFedLocalizer(std::unique_ptr<Localizer> fed, const Ceiling
 
 void FlowFedLocalizer::reset(Stamp stamp, const std::optional<Prior>& prior) {
   waiting_.clear();
+  trust_ = {};
   fed_->reset(stamp, prior);
   refresh_belief();
 }
@@ -98,7 +102,7 @@ UpdateResult FlowFedLocalizer::follow(const FlowObservation& flow) {
   }
   const std::vector<OdometryIncrement> parts = take_until(flow.shot.stamp);
   result.dof = 3;
-  if (const auto increment = joined_with_flow(parts, flow.shift, camera_, params_)) {
+  if (const auto increment = joined_with_flow(parts, flow.shift, camera_, params_, trust_)) {
     fed_->predict(*increment);
     result.status = UpdateStatus::fused;
     return result;

@@ -29,12 +29,17 @@ OdometryIncrement increment_of(const Pose2& step, const OdometryIncrement& read)
 
 }  // namespace
 
+Eigen::Matrix3d motion_covariance(const OdometryIncrement& read, const OdometryNoise& noise,
+                                  const FlowMotion& seen) {
+  const OdometryIncrement gone = increment_of(seen.step, read);
+  const Eigen::Matrix3d G = move_jacobian_control({}, gone);
+  return G * control_covariance(gone, noise) * G.transpose();
+}
+
 std::optional<FusedMotion> fuse_motions(const OdometryIncrement& read, const OdometryNoise& noise,
                                         const FlowMotion& seen, double gate) {
   const Pose2 by_wheels = move({}, read);
-  const OdometryIncrement gone = increment_of(seen.step, read);
-  const Eigen::Matrix3d G = move_jacobian_control({}, gone);
-  const Eigen::Matrix3d P = G * control_covariance(gone, noise) * G.transpose();
+  const Eigen::Matrix3d P = motion_covariance(read, noise, seen);
   const Eigen::Vector3d off = difference(seen.step, by_wheels);
   if (stands(read) && square(off, seen.covariance) <= gate) return FusedMotion{};
   const Eigen::Matrix3d S = P + seen.covariance;

@@ -86,6 +86,10 @@ void describe(ParamVisitor& v, CeilingFilterParams& p) {
           "σ of the camera's tilt about either axis, constant, that its calibration leaves");
   v.number("height_sigma", p.height_sigma, {0.0, 0.5},
            About("σ of the camera's distance to the ceiling, constant").in("of it"));
+  v.number("mount_sigma_m", p.mount_sigma_m, {0.0, 1.0},
+           "σ of the camera's place on the robot, in x and in y, constant: no patch tells it");
+  v.angle("mount_yaw_sigma_deg", p.mount_yaw_sigma, {0.0, 20.0},
+          "σ of its turn about the vertical, as well");
   v.number("gate", p.gate, {1.0, 1000.0},
            About("of a patch's three numbers, and of flow against odometry").in("χ²"));
   v.number("flow_floor", p.flow_floor, {0.0, 0.1},

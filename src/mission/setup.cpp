@@ -21,6 +21,7 @@ namespace vigia::mission {
 namespace {
 
 constexpr const char* kNobody = "none";
+constexpr double kLeastRise_m = 0.1;  // of a ceiling above the camera
 
 const Bounds kMetres{-1e4, 1e4};
 constexpr double kLeastRoute_m = 0.01;
@@ -156,6 +157,15 @@ void describe_localizers(ParamVisitor& v, MissionSetup& setup) {
 /// Whom the ceiling's flow moves: the localizer of its patches, unless others are named.
 void describe_ceiling(ParamVisitor& v, MissionSetup& setup) {
   setup.ceiling.odometry = setup.noise.odometry;
+  const auto camera = ceiling_camera(setup);
+  v.require(!camera || camera->rise_m() > kLeastRise_m, "ceiling",
+            "the world's ceiling must hang above the camera that looks up at it");
+  // As the camera is truly mounted, unless the mission says otherwise.
+  if (const auto& mounting = setup.disturbances.mounting; mounting && camera) {
+    setup.ceiling.tilt_sigma = setup.ceiling.mount_yaw_sigma = mounting->angle;
+    setup.ceiling.mount_sigma_m = mounting->offset_m;
+    setup.ceiling.height_sigma = mounting->offset_m / camera->rise_m();
+  }
   v.map("ceiling", setup.ceiling, "the localizer under a patched ceiling, and the ceiling's flow");
   std::vector<std::string> known = names_of(localizers());
   known.emplace_back(kNobody);

@@ -280,6 +280,36 @@ TEST(CeilingFilter, OnePatchTooManyIsNoKidnapping) {
   EXPECT_EQ(filter.belief().status, BeliefStatus::ambiguous);
 }
 
+/// Strips look the same after half a turn.
+TEST(CeilingFilter, WithoutMarksAHeadingThatIsHardlyKnownStaysOpenByHalfATurn) {
+  CeilingGrid strips;
+  strips.polarity = false;
+  const Pose2 robot{0.2, 0.1, 0.4};
+  std::vector<PatchImage> images = images_about(up_camera(), {}, robot);
+  for (PatchImage& image : images) image.forward_log_odds = 0.0;
+  for (const double off : {0.3, 0.5 * kPi, 0.9 * kPi}) {
+    CeilingFilter filter(up_camera(), strips, {});
+    Pose2 believed = robot;
+    believed.theta = wrap_angle(robot.theta + off);
+    filter.reset({}, near(believed, 0.3, kPi));
+    for (int i = 1; i <= 5; ++i) {
+      filter.predict_unknown(Stamp::from_seconds(0.001 * i));
+      filter.update(images);
+    }
+    const Belief& belief = filter.belief();
+    EXPECT_EQ(belief.status, BeliefStatus::ambiguous) << off;
+    double nearest = 10.0;
+    for (const PoseHypothesis& one : belief.hypotheses)
+      nearest = std::min(nearest, difference(one.pose, robot).norm());
+    EXPECT_LT(nearest, 0.02) << off;
+  }
+  // A heading that is known leaves nothing open.
+  CeilingFilter sure(up_camera(), strips, {});
+  sure.reset({}, near(robot, 0.05, from_deg(5.0)));
+  sure.update(images);
+  EXPECT_EQ(sure.belief().status, BeliefStatus::tracking);
+}
+
 TEST(CeilingFilter, IsAmbiguousWithTheTruthAmongItsHypothesesAfterDrivingUnseenForHalfAPitch) {
   CeilingFilter filter(up_camera(), {}, {});
   filter.reset({}, near({0.0, 0.0, 0.0}, 0.01, 0.01));

@@ -84,6 +84,24 @@ TEST(MotionFusion, AnIncrementHasTheMotionsCovariance) {
   EXPECT_LT((back - motion.covariance).norm(), 1e-12);
 }
 
+/// By a tenth too fast, each frame within what the wheels allow of it.
+TEST(FlowTrust, AFlowThatIsTooFastAllTheTimeIsFoundOut) {
+  FlowTrust wrong;
+  FlowTrust right;
+  int found_out = -1;
+  for (int i = 0; i < 200; ++i) {
+    const auto read = increment(0.04 * i, 0.04 * (i + 1), 0.0, 0.02, 0.0);
+    const auto fast = flow_of(increment(0.04 * i, 0.04 * (i + 1), 0.0, 0.0225, 0.0), 3e-4);
+    EXPECT_TRUE(fuse_motions(read, kRoughWheels, fast, kFlowGate));
+    const bool held = wrong.holds(read, kRoughWheels, fast, Eigen::Matrix3d::Zero(), kFlowGate);
+    if (!held && found_out < 0) found_out = i;
+    EXPECT_TRUE(
+        right.holds(read, kRoughWheels, flow_of(read, 3e-4), Eigen::Matrix3d::Zero(), kFlowGate));
+  }
+  EXPECT_GT(found_out, 5);
+  EXPECT_LT(found_out, 100);
+}
+
 /// Dead reckoning under a ceiling's flow of 0.3 mm and 0.02° a frame.
 class FlowFedDrive {
  public:

@@ -74,6 +74,7 @@ class DriveBound {
   EstimatorSetup setup_;
   std::optional<localization::FieldModel> field_;
   States states_;
+  localization::FlowTrust trust_;
   std::vector<Move> waiting_;  ///< for the flow
 };
 

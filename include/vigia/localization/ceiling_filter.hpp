@@ -11,6 +11,7 @@
 #include "vigia/core/belief.hpp"
 #include "vigia/core/odometry.hpp"
 #include "vigia/localization/ceiling_model.hpp"
+#include "vigia/localization/flow_trust.hpp"
 
 namespace vigia::localization {
 
@@ -24,6 +25,10 @@ struct CeilingFilterParams {
   double sure = 0.99;          ///< a hypothesis is believed alone from this weight on
   double spurious = 0.02;      ///< chance that a patch hangs where the grid has none
   double missing = 0.05;       ///< … and that one of the grid's is not found in plain sight
+  /// What patches never tell: where on the robot the camera is mounted, and its turn about its
+  /// axis.
+  double mount_sigma_m = 0.0;    ///< in x and in y
+  double mount_yaw_sigma = 0.0;  ///< rad
   int max_gated = 3;  ///< frames in a row that contradict the prediction, until it is doubted
 };
 
@@ -53,6 +58,9 @@ enum class CeilingUpdate {
 /// the prediction, so that where the robot may have moved by half a pitch unseen several shifts of
 /// the same filter remain, weighted; the belief is then ambiguous until motion, or the edge of a
 /// grid that has one, tells them apart: a patch where a shift has none, or none where it has one.
+/// Patches without a mark leave it open by half a turn as well, where the heading was hardly known:
+/// so does a hypothesis of the pose turned about a point half way between, which nothing on such a
+/// grid settles.
 class CeilingFilter {
  public:
   CeilingFilter(const CeilingCamera& camera, const CeilingGrid& grid,
@@ -101,7 +109,16 @@ class CeilingFilter {
   bool open() const;
   std::vector<Seen> see(const std::vector<PatchImage>& patches) const;
   std::vector<Seen> associated(const std::vector<Seen>& seen, const Pose2& pose) const;
-  Pose2 point_of_linearisation(const std::vector<Seen>& seen) const;
+  /// Where an update begins, and the chance that the robot faces the other way.
+  struct Start {
+    Pose2 pose;
+    double turned = 0.0;
+    Eigen::Vector2d about = Eigen::Vector2d::Zero();  ///< half way to where it then is
+  };
+  Start point_of_linearisation(const std::vector<Seen>& seen) const;
+  Pose2 placed_by(const Seen& reference, double turn) const;
+  double log_prior(const Pose2& at) const;
+  void note_turn(const Start& start);
   bool in_sight(const CeilingCell& cell, const Pose2& at, double margin_px) const;
   void hold(const std::vector<Seen>& seen, const Pose2& at, bool afresh);
   Eigen::VectorXd state_at(const Pose2& pose) const;
@@ -141,6 +158,9 @@ class CeilingFilter {
   bool cells_unsure_ = false;  ///< whether the patches before were perhaps the same in other cells
   /// Of the patch that alone ended a wide prediction, until another agrees.
   std::optional<CeilingCell> lone_;
+  double turned_ = 0.0;  ///< chance that the robot faces the other way
+  Eigen::Vector2d turned_about_ = Eigen::Vector2d::Zero();
+  FlowTrust flow_trust_;
   int gated_ = 0;  ///< frames in a row, weighed
   /// Of the motion in a tick lately, at most; world frame.
   Eigen::Matrix3d lively_Q_ = Eigen::Matrix3d::Zero();

@@ -12,11 +12,13 @@ namespace vigia::localization {
 
 /// Increments between two frames as one, with what the flow says of it. What the camera's tilt and
 /// the ceiling's height may miss is taken for noise of the flow. Nothing where flow and odometry
-/// exclude each other. Of @p params the noise of odometry and flow, tilt, height and gate count.
+/// exclude each other, in this frame or over the last ones. Of @p params the noise of odometry and
+/// flow, tilt, height and gate count.
 std::optional<OdometryIncrement> joined_with_flow(const std::vector<OdometryIncrement>& parts,
                                                   const ImageShift& shift,
                                                   const CeilingCamera& camera,
-                                                  const CeilingFilterParams& params);
+                                                  const CeilingFilterParams& params,
+                                                  FlowTrust& trust);
 
 /// Any localizer, moved on by odometry and the flow of a ceiling together. The odometry since the
 /// last frame waits for the flow of the next, and the belief goes ahead of it by the odometry
@@ -44,6 +46,7 @@ class FlowFedLocalizer final : public Localizer {
   std::unique_ptr<Localizer> fed_;
   CeilingCamera camera_;
   CeilingFilterParams params_;
+  FlowTrust trust_;
   std::vector<OdometryIncrement> waiting_;  ///< in order of time
   Belief belief_;
 };

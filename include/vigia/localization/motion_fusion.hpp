@@ -17,6 +17,11 @@ struct FusedMotion {
   Eigen::Matrix3d flow_weight = Eigen::Matrix3d::Zero();  ///< ∂step/∂(the flow's step)
 };
 
+/// Covariance of what the odometry reads of a motion, in the robot's frame where it began, over the
+/// way that the flow shows.
+Eigen::Matrix3d motion_covariance(const OdometryIncrement& read, const OdometryNoise& noise,
+                                  const FlowMotion& seen);
+
 /// The flow as a measurement of the motion that the odometry predicts. The odometry's variance is
 /// that of the way which the flow shows: by its own reading, one that came out too short would be
 /// too sure. Where it reads nothing at all and the flow does not contradict it, the robot stands.
