@@ -9,13 +9,14 @@
 namespace vigia::mission {
 
 /// The sweep of a lost robot that stands still and turns its head: one stop after another, from
-/// the present side of the pan range to the other, zoomed out.
+/// the present side of the pan range to the other, zoomed out. From a place that it could not leave
+/// the next sweeps look farther, with a longer lens.
 class LookAround {
  public:
   explicit LookAround(const MissionSetup& setup) : setup_(setup) {}
 
-  /// Plans a sweep from where the head points now.
-  void begin(const HeadReading& head);
+  /// Plans a sweep from where the head points now; @p again: from the same place as the last.
+  void begin(const HeadReading& head, bool again = false);
 
   /// Rates for the head, towards the present stop.
   HeadRates step(const HeadReading& head) const;
@@ -34,6 +35,8 @@ class LookAround {
   std::size_t stop_ = 0;
   std::optional<Stamp> settled_since_;
   int sweeps_ = 0;
+  int repeats_ = 0;  ///< of the sweeps, without a change of place
+  double zoom_mm_ = 0.0;
 };
 
 }  // namespace vigia::mission

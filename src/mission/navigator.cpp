@@ -10,7 +10,7 @@ namespace {
 /// Beyond a point by so much of the path, it lies behind.
 constexpr double kBehind_m = 0.3;
 /// Times in a drive that a passage is driven at anew after the robot came to stand aside of it.
-constexpr int kRealign = 3;
+constexpr int kRealign = 12;
 
 }  // namespace
 

@@ -158,7 +158,9 @@ void PtzAttention::cancel() {
 
 void PtzAttention::note_failure(LandmarkId landmark, Stamp now) {
   scheduler_.failed(now, landmark);
-  if (!look_.fused) failed_.push_back(landmark);
+  // What was seen at first may have been seen from where the robot has been taken away since. A
+  // ring would tell; without one the robot stands until a landmark does.
+  if (!look_.fused || !setup_.robot.range_ring) failed_.push_back(landmark);
 }
 
 std::size_t PtzAttention::different_failed() const {

@@ -109,9 +109,9 @@ RecoveryStep SweepRecovery::step(const RecoveryInput& input) {
   return step;
 }
 
-void SweepRecovery::begin_sweep(const HeadReading& head, RecoveryStep& step) {
+void SweepRecovery::begin_sweep(const HeadReading& head, RecoveryStep& step, bool again) {
   step.new_look = true;
-  look_around_.begin(head);
+  look_around_.begin(head, again);
 }
 
 const Delivery* SweepRecovery::delivered(const std::vector<Delivery>& deliveries) const {
@@ -149,7 +149,7 @@ void SweepRecovery::conclude(const RecoveryInput& input, RecoveryStep& step) {
   }
   if (!begin_exploration(input)) {
     // From the same place the same is seen: not to be counted again.
-    begin_sweep(input.readings.head, step);
+    begin_sweep(input.readings.head, step, true);
     return;
   }
   if (!found_.empty()) alternatives_ = Alternatives{std::exchange(found_, {}), input.belief.pose};

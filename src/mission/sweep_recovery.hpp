@@ -31,7 +31,7 @@ class SweepRecovery : public Recovery {
     Stamp end;
   };
 
-  void begin_sweep(const HeadReading& head, RecoveryStep& step);
+  void begin_sweep(const HeadReading& head, RecoveryStep& step, bool again = false);
   /// What the eye's camera has delivered that was exposed in the present look.
   const Delivery* delivered(const std::vector<Delivery>& deliveries) const;
   void process(const perception::Capture& capture);

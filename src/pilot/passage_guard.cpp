@@ -10,17 +10,19 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kNarrow_m = 0.15;     // beside the robot: what is wider asks for nothing
-constexpr double kNear_m = 1.2;        // before a passage, where the walls begin to be matched
-constexpr double kPast_m = 0.5;        // behind it, where that ends
-constexpr double kGate_m = 0.25;       // before it, where a robot that must not enter stops
-constexpr double kFullSpeed_m = 0.12;  // beside the robot: driven at the base's speed
-constexpr double kSlowest = 0.35;      // of that speed
-constexpr double kInSigmas = 3.0;      // that must fit beside the robot
-constexpr double kTracking_m = 0.01;   // how well a straight line is followed
-constexpr double kPatience_s = 5.0;    // before a gate, until the passage is refused
-constexpr double kDisagrees_s = 1.0;   // after which the match begins anew …
-constexpr double kAnew = 2.0;          // … with so many times the belief's σ
+constexpr double kNarrow_m = 0.15;        // beside the robot: what is wider asks for nothing
+constexpr double kNear_m = 1.2;           // before a passage, where the walls begin to be matched
+constexpr double kPast_m = 0.5;           // behind it, where that ends
+constexpr double kGate_m = 0.25;          // before it, where a robot that must not enter stops
+constexpr double kNoDetour_m = 0.5;       // before it, from where nothing is driven round
+constexpr double kStartsInside_m = 0.05;  // of a path that begins nearer to it
+constexpr double kFullSpeed_m = 0.12;     // beside the robot: driven at the base's speed
+constexpr double kSlowest = 0.35;         // of that speed
+constexpr double kInSigmas = 3.0;         // that must fit beside the robot
+constexpr double kTracking_m = 0.01;      // how well a straight line is followed
+constexpr double kPatience_s = 5.0;       // before a gate, until the passage is refused
+constexpr double kDisagrees_s = 1.0;      // after which the match begins anew …
+constexpr double kAnew = 2.0;             // … with so many times the belief's σ
 constexpr double kWallsWithin_m = 0.9;
 constexpr double kWallStep_m = 0.02;
 constexpr double kKeptBeside_m = 0.025;
@@ -32,15 +34,27 @@ PassageGuard::PassageGuard(const FloorPlan& plan, double robot_radius_m, BaseLim
     : plan_(&plan), robot_radius_m_(robot_radius_m), limits_(limits), fix_(plan, ring) {}
 
 void PassageGuard::follow(const Path& path) {
-  passages_.clear();
-  for (const Passage& passage : find_passages(*plan_, path, robot_radius_m_ + kNarrow_m)) {
-    // A robot may start and end in a narrow place.
-    const bool at_an_end =
-        passage.begin_m < robot_radius_m_ || passage.end_m > path.length() - robot_radius_m_;
-    if (!at_an_end) passages_.push_back(passage);
-  }
+  passages_ = find_passages(*plan_, path, robot_radius_m_ + kNarrow_m);
+  path_ = path;
   near_ = nullptr;
   held_s_ = 0.0;
+}
+
+/// A robot may start and end in a narrow place.
+bool PassageGuard::leads_through(const Passage& passage) const {
+  return passage.begin_m > kStartsInside_m && passage.end_m < path_.length() - robot_radius_m_;
+}
+
+bool PassageGuard::inside(double station) const {
+  return near_ != nullptr && leads_through(*near_) && station >= near_->begin_m - kNoDetour_m &&
+         station <= near_->end_m;
+}
+
+double PassageGuard::path_off(const Passage& passage) const {
+  double farthest = 0.0;
+  for (double s = passage.begin_m; s <= passage.end_m; s += kWallStep_m)
+    farthest = std::max(farthest, std::abs(cross(passage.along, path_.at(s) - passage.middle)));
+  return farthest;
 }
 
 double PassageGuard::room_beside(const Passage& passage) const {
@@ -89,7 +103,8 @@ PassageOrder PassageGuard::order(const Belief& belief, double station, double dt
   const double away_m = std::max({0.0, near_->begin_m - station, station - near_->end_m});
   order.speed =
       std::min(limits_.speed, std::hypot(inside, braking_rate(limits_.acceleration, away_m)));
-  if (station < near_->begin_m - kGate_m || station > near_->begin_m) return order;
+  const bool at_gate = station >= near_->begin_m - kGate_m && station <= near_->begin_m;
+  if (!at_gate || !leads_through(*near_)) return order;
 
   const Vector2d normal(-near_->along.y(), near_->along.x());
   const double belief_sigma =
@@ -97,7 +112,10 @@ PassageOrder PassageGuard::order(const Belief& belief, double station, double dt
   const double sigma_m = fixed() ? fix_.sigma_across(near_->along) : belief_sigma;
   const double off_m = std::abs(cross(near_->along, base(belief).position() - near_->middle));
   const bool known = kInSigmas * sigma_m + kTracking_m <= room_m;
-  const bool aligned = kInSigmas * sigma_m + off_m <= room_m;
+  // A path that leads through obliquely, round somebody behind the door, would not be braked for
+  // there, but at the frame.
+  const bool straight = path_off(*near_) + kTracking_m <= room_m - beside_m();
+  const bool aligned = straight && kInSigmas * sigma_m + off_m <= room_m;
   if (known && aligned) {
     held_s_ = 0.0;
     return order;

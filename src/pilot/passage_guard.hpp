@@ -37,6 +37,8 @@ class PassageGuard {
   void sense(const PilotInput& input, double station);
   /// Where the base is: by the ring near a passage, by the belief elsewhere.
   const Pose2& base(const Belief& belief) const;
+  /// Whether the robot is in a passage or about to go in: there is no way round things there.
+  bool inside(double station) const;
   PoseDoubt doubt(const Belief& belief) const;
   PassageOrder order(const Belief& belief, double station, double dt);
   /// What must not be touched. Near a passage the walls are where the plan has them, not where a
@@ -49,6 +51,10 @@ class PassageGuard {
 
  private:
   double room_beside(const Passage& passage) const;
+  /// Whether the path comes from outside of it and leads on beyond it.
+  bool leads_through(const Passage& passage) const;
+  /// How far from its middle line the path leads through it, m.
+  double path_off(const Passage& passage) const;
   bool fixed() const { return near_ != nullptr && fix_.agrees(); }
 
   const FloorPlan* plan_;
@@ -56,6 +62,7 @@ class PassageGuard {
   BaseLimits limits_;
   RingFix fix_;
   std::vector<Passage> passages_;
+  Path path_;
   const Passage* near_ = nullptr;  ///< the passage that is driven or comes next
   std::optional<Stamp> scanned_;
   double disagreed_s_ = 0.0;

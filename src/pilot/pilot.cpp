@@ -256,9 +256,10 @@ PilotOutput Pilot::step(const PilotInput& input) {
 
   PilotOutput output;
   output.obstacle_ahead = blockade.thing;
-  output.activations = supervise(
-      {input.hold, blockade.ahead_m, self.lasted_s, self.evading, self.detour.has_value()},
-      avoidance);
+  output.activations =
+      supervise({input.hold, blockade.ahead_m, self.lasted_s, self.evading,
+                 self.detour.has_value() && !self.guard.inside(self.follower.station())},
+                avoidance);
   const Activations& a = output.activations;
   if (a.avoid > 0.5) self.evading = true;
 

@@ -118,6 +118,16 @@ TEST(Recovery, WithoutARingARobotDoesNotDriveOnWhereALandmarkWasNotAndThereIsNoO
   EXPECT_EQ(blind.fastest_mps, 0.0);
 }
 
+TEST(Recovery, WithoutARingARobotThatIsTakenAwayInTheMiddleOfALookDoesNotDriveOnAfterIt) {
+  const MissionSetup setup =
+      load_mission(std::string(VIGIA_SOURCE_DIR) + "/config/missions/quixote-room.yaml",
+                   {"disturbances.kidnapping=realistic"});
+  RecoveryEvents log;
+  EXPECT_EQ(run_mission(setup, 134, {&log}), Outcome::arrived);
+  EXPECT_TRUE(log.has(EventKind::target_lost));
+  EXPECT_TRUE(log.has(EventKind::recovered));
+}
+
 TEST(Recovery, ARobotThatSeesNoLandmarkGivesUpAndSaysSo) {
   MissionSetup setup = mission_with_prior_off_by({});
   // A belief that is lost at once, and a sweep that looks at the floor.
