@@ -22,18 +22,20 @@ constexpr int kSlopeU = 10;
 constexpr int kSlopeV = 11;
 constexpr int kBlur = 12;
 constexpr int kTone = 13;
-constexpr int kTagUnknowns = 14;
+constexpr int kToneShape = 14;
+constexpr int kTagUnknowns = 15;
 using TagNormal = Eigen::Matrix<double, kTagUnknowns, kTagUnknowns>;
 using TagVector = Eigen::Matrix<double, kTagUnknowns, 1>;
 
 constexpr double kMaxTagBlur = 6.0;  // px
 constexpr double kEdgeReach = 2.5;   // blurs from an edge that are fitted; flat parts are thinned
 constexpr int kFlatThinning = 4;
-constexpr double kTail = 3.5;           // blurs beyond which a field has no light in a pixel
-constexpr double kSureBlurs = 2.0;      // blurs that stay free at the rim of what is printed
-constexpr double kToneSigma = 0.5;      // prior of κ
-constexpr double kTagRest = 0.03;       // px: what is left then is a few hundredths of it
-constexpr double kMaxCornerStep = 1.5;  // px
+constexpr double kTail = 3.5;            // blurs beyond which a field has no light in a pixel
+constexpr double kSureBlurs = 2.0;       // blurs that stay free at the rim of what is printed
+constexpr double kToneSigma = 0.5;       // prior of κ
+constexpr double kToneShapeSigma = 0.3;  // prior of λ
+constexpr double kTagRest = 0.03;        // px: what is left then is a few hundredths of it
+constexpr double kMaxCornerStep = 1.5;   // px
 
 /// Φ and φ at equal steps.
 class GaussTable {
@@ -88,7 +90,9 @@ struct TagState {
   double contrast = 0.0;
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();  ///< a px
   double blur = kStartBlur;
-  double tone = 0.0;
+  /// The camera's response to a share T of white: T + (κ + λ(1 − 2T)) T(1 − T).
+  double tone = 0.0;        ///< κ
+  double tone_shape = 0.0;  ///< λ
 };
 
 /// Where a pixel lies in the grid, and how the grid is stretched there.
@@ -164,6 +168,10 @@ class PrintModel {
     double by_y = 0.0;
     double by_sigma_x = 0.0;
     double by_sigma_y = 0.0;
+    // The blur is round in the image, not in the grid, which is drawn out askew: x and y share a
+    // covariance, whose part is a series in it (Mehler 1866, two terms).
+    const double first = blur_ * blur_ * value.place.dg_dx.row(0).dot(value.place.dg_dx.row(1));
+    const double second = 0.5 * first * first / (blur_ * blur_ * stretch_x * stretch_y);
     for (int j = 0; j < down_.count; ++j) {
       double share = 0.0;
       double by_place = 0.0;
@@ -176,7 +184,8 @@ class PrintModel {
         by_blur += across_.by_blur[k];
       }
       const auto k = static_cast<std::size_t>(j);
-      value.white += share * down_.share[k];
+      value.white += share * down_.share[k] + first * by_place * down_.by_place[k] +
+                     second * by_blur * down_.by_blur[k];
       by_x += by_place * down_.share[k];
       by_sigma_x += by_blur * down_.share[k];
       by_y += share * down_.by_place[k];
@@ -204,11 +213,14 @@ struct TagSums {
 /// The model's derivatives at one pixel, whose residual is set.
 TagVector linearise(const TagState& state, const PrintValue& print, TagPixel& pixel) {
   const double T = print.white;
-  const double tone = T + state.tone * T * (1.0 - T);
+  const double bend = T * (1.0 - T);
+  const double tone = T + (state.tone + state.tone_shape * (1.0 - 2.0 * T)) * bend;
   const double light = 1.0 + state.slope.x() * pixel.u + state.slope.y() * pixel.v;
   const double base = state.dark + state.contrast * tone;
   pixel.residual = pixel.grey - base * light;
-  const double by_print = state.contrast * light * (1.0 + state.tone * (1.0 - 2.0 * T));
+  const double by_print =
+      state.contrast * light *
+      (1.0 + state.tone * (1.0 - 2.0 * T) + state.tone_shape * (1.0 - 6.0 * bend));
   // x = N(g)/w(g): moving the print by ∂x/∂h changes a fixed pixel by −∇T·∂x/∂h.
   const Eigen::Vector2d& g = print.place.g;
   const double w = 1.0 / (state.iHg(2, 0) * g.x() + state.iHg(2, 1) * g.y() + state.iHg(2, 2));
@@ -217,7 +229,8 @@ TagVector linearise(const TagState& state, const PrintValue& print, TagPixel& pi
   TagVector row;
   row << pull.x() * g.x(), pull.x() * g.y(), pull.x(), pull.y() * g.x(), pull.y() * g.y(), pull.y(),
       along * g.x(), along * g.y(), light, light * tone, base * pixel.u, base * pixel.v,
-      by_print * print.by_blur, state.contrast * light * T * (1.0 - T);
+      by_print * print.by_blur, state.contrast * light * bend,
+      state.contrast * light * bend * (1.0 - 2.0 * T);
   return row;
 }
 
@@ -388,6 +401,9 @@ class TagFitting {
     const double prior = variance / (kToneSigma * kToneSigma);
     sums.normal(kTone, kTone) += prior;
     sums.gradient[kTone] -= prior * state_.tone;
+    const double shape_prior = variance / (kToneShapeSigma * kToneShapeSigma);
+    sums.normal(kToneShape, kToneShape) += shape_prior;
+    sums.gradient[kToneShape] -= shape_prior * state_.tone_shape;
     TagVector delta = sums.normal.ldlt().solve(sums.gradient);
     if (!delta.allFinite()) return std::nullopt;
     double movement = 0.0;
@@ -401,6 +417,7 @@ class TagFitting {
     const double blur = state_.blur;
     state_.blur = std::clamp(blur + std::clamp(delta[kBlur], -0.4, 0.6), kPixelBlur, kMaxTagBlur);
     state_.tone = std::clamp(state_.tone + delta[kTone], -0.9, 0.95);
+    state_.tone_shape = std::clamp(state_.tone_shape + delta[kToneShape], -0.9, 0.9);
     normal_ = sums.normal;
     variance_ = variance;
     if (state_.contrast < params_.min_contrast || !(std::abs(state_.slope.maxCoeff()) < 0.1))
