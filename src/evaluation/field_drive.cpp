@@ -113,7 +113,7 @@ class Driver {
     const double most = params_->turn_rad_s * params_->period_s;
     const double turn = std::clamp(0.2 * off, -most, most);
     const double speed = params_->speed_m_s * std::max(0.2, std::cos(0.5 * off));
-    const OdometryIncrement u{from, to, 0.5 * turn, speed * params_->period_s, 0.5 * turn};
+    OdometryIncrement u{from, to, 0.5 * turn, speed * params_->period_s, 0.5 * turn};
     const Eigen::Vector3d sigma = control_covariance(u, params_->odometry).diagonal().cwiseSqrt();
     true_motion = u;
     true_motion.rot1 += sigma.x() * random_.normal();
