@@ -4,45 +4,13 @@
 #include <cmath>
 
 #include "vigia/core/plane_geometry.hpp"
+#include "vigia/core/sector.hpp"
 #include "vigia/sim/params.hpp"
 
 namespace vigia::sim {
 namespace {
 
 using Eigen::Vector2d;
-
-/// A sector of the plane with its tip in the origin, narrower than a half-plane.
-struct Sector {
-  Vector2d right;  ///< unit vectors along the edges
-  Vector2d left;
-
-  bool holds(const Vector2d& p) const { return cross(right, p) >= 0.0 && cross(left, p) <= 0.0; }
-};
-
-/// Cuts [low, high], fractions of the way from a to b, down to where side(p) ≥ 0. False: nothing
-/// is left.
-bool cut(double side_a, double side_b, double& low, double& high) {
-  if (side_a < 0.0 && side_b < 0.0) return false;
-  if (side_a >= 0.0 && side_b >= 0.0) return true;
-  const double at = side_a / (side_a - side_b);
-  if (side_a < 0.0)
-    low = std::max(low, at);
-  else
-    high = std::min(high, at);
-  return low <= high;
-}
-
-/// Distance from the sector's tip to the part of the segment ab inside it.
-std::optional<double> segment_in_sector(const Sector& sector, const Vector2d& a,
-                                        const Vector2d& b) {
-  double low = 0.0;
-  double high = 1.0;
-  if (!cut(cross(sector.right, a), cross(sector.right, b), low, high)) return std::nullopt;
-  if (!cut(-cross(sector.left, a), -cross(sector.left, b), low, high)) return std::nullopt;
-  const Vector2d ab = b - a;
-  const double nearest = std::clamp(-a.dot(ab) / ab.squaredNorm(), low, high);
-  return (a + nearest * ab).norm();
-}
 
 /// Distance from the sector's tip to the part of a circle inside it.
 std::optional<double> circle_in_sector(const Sector& sector, const Vector2d& centre,
@@ -65,20 +33,14 @@ std::optional<double> circle_in_sector(const Sector& sector, const Vector2d& cen
 std::optional<double> nearest_in_cone(const FloorPlan& plan, const std::vector<Pillar>& pillars,
                                       const Eigen::Vector2d& p, double direction, double cone,
                                       double reach_m, double above_m) {
-  const Sector sector{unit_vector(direction - 0.5 * cone), unit_vector(direction + 0.5 * cone)};
-  double nearest = reach_m;
-  bool echo = false;
-  const auto take = [&](const std::optional<double>& distance) {
-    if (!distance || *distance > nearest) return;
-    nearest = *distance;
-    echo = true;
-  };
-  for (const Wall& face : plan.faces())
-    if (face.height_m > above_m) take(segment_in_sector(sector, face.a - p, face.b - p));
-  for (const Pillar& pillar : pillars)
-    if (pillar.height_m > above_m)
-      take(circle_in_sector(sector, pillar.centre - p, pillar.radius_m));
-  return echo ? std::optional(nearest) : std::nullopt;
+  const Sector sector = Sector::about(direction, 0.5 * cone);
+  std::optional<double> nearest = nearest_face(plan, p, sector, reach_m, above_m);
+  for (const Pillar& pillar : pillars) {
+    if (pillar.height_m <= above_m) continue;
+    const auto distance = circle_in_sector(sector, pillar.centre - p, pillar.radius_m);
+    if (distance && *distance <= nearest.value_or(reach_m)) nearest = distance;
+  }
+  return nearest;
 }
 
 RangeRing::RangeRing(const RangeRingParams& params, std::uint64_t seed)

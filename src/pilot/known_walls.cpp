@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vigia/core/sector.hpp"
+
 namespace vigia::pilot {
 namespace {
 
@@ -10,17 +12,6 @@ using Eigen::Vector2d;
 
 constexpr double kSigmas = 4.0;
 constexpr double kWidest = 0.7;  // rad, of a cone's half angle
-
-/// Keeps of the fractions [low, high] of a segment those where a linear function that is @p at_a at
-/// its beginning and @p at_b at its end is not negative.
-void clip(double at_a, double at_b, double& low, double& high) {
-  if (at_a < 0.0 && at_b < 0.0)
-    high = -1.0;
-  else if (at_a < 0.0)
-    low = std::max(low, at_a / (at_a - at_b));
-  else if (at_b < 0.0)
-    high = std::min(high, at_a / (at_a - at_b));
-}
 
 double distance_from_origin(const Vector2d& a, const Vector2d& b) {
   const Vector2d ab = b - a;
@@ -35,9 +26,8 @@ bool crosses_sector(const Vector2d& a, const Vector2d& b, double slope, double n
                     double farthest) {
   double low = 0.0;
   double high = 1.0;
-  clip(a.x() * slope - a.y(), b.x() * slope - b.y(), low, high);
-  clip(a.x() * slope + a.y(), b.x() * slope + b.y(), low, high);
-  if (low > high) return false;
+  if (!keep_positive(a.x() * slope - a.y(), b.x() * slope - b.y(), low, high)) return false;
+  if (!keep_positive(a.x() * slope + a.y(), b.x() * slope + b.y(), low, high)) return false;
   const Vector2d p = a + low * (b - a);
   const Vector2d q = a + high * (b - a);
   return distance_from_origin(p, q) <= farthest && std::max(p.norm(), q.norm()) >= nearest;

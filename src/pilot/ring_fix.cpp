@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "vigia/core/angle.hpp"
-#include "vigia/core/plane_geometry.hpp"
+#include "vigia/core/sector.hpp"
 
 namespace vigia::pilot {
 namespace {
@@ -23,50 +23,18 @@ constexpr double kFixMinSigma_rad = from_deg(0.5);
 /// Wheels that are worse than most: what they do is corrected within a second.
 const OdometryNoise kFixOdometry{0.03, from_deg(1.0), from_deg(1.0)};
 
-/// Keeps of the fractions [low, high] of a segment those where a linear function that is @p at_a at
-/// its beginning and @p at_b at its end is not negative; nothing is left where low > high.
-void keep_positive(double at_a, double at_b, double& low, double& high) {
-  if (at_a < 0.0 && at_b < 0.0)
-    high = -1.0;
-  else if (at_a < 0.0)
-    low = std::max(low, at_a / (at_a - at_b));
-  else if (at_b < 0.0)
-    high = std::min(high, at_a / (at_a - at_b));
-}
-
 /// The distance of a beam and how it changes with the pose, where it changes smoothly.
 struct BeamModel {
   double range_m = 0.0;
   Eigen::RowVector3d drange_dpose = Eigen::RowVector3d::Zero();
 };
 
-}  // namespace
-
+/// Where a base at @p base has the nearest face in a beam.
 std::optional<double> nearest_in_beam(const FloorPlan& plan, const Pose2& base, double bearing,
                                       double half_angle, double reach_m) {
-  const double angle = base.theta + bearing;
-  const Vector2d right = unit_vector(angle - half_angle);
-  const Vector2d left = unit_vector(angle + half_angle);
-  double nearest = reach_m;
-  bool echo = false;
-  for (const Wall& face : plan.faces()) {
-    const Vector2d a = face.a - base.position();
-    const Vector2d b = face.b - base.position();
-    double low = 0.0;
-    double high = 1.0;
-    keep_positive(cross(right, a), cross(right, b), low, high);
-    keep_positive(cross(a, left), cross(b, left), low, high);
-    if (low > high) continue;
-    const Vector2d ab = b - a;
-    const double distance = (a + std::clamp(-a.dot(ab) / ab.squaredNorm(), low, high) * ab).norm();
-    if (distance > nearest) continue;
-    nearest = distance;
-    echo = true;
-  }
-  return echo ? std::optional(nearest) : std::nullopt;
+  const Sector beam = Sector::about(base.theta + bearing, half_angle);
+  return nearest_face(plan, base.position(), beam, reach_m, 0.0);
 }
-
-namespace {
 
 /// Nothing where a face enters or leaves the cone within @p sigmas of (x, y, θ): there the range
 /// jumps.

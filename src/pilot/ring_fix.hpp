@@ -12,11 +12,6 @@
 
 namespace vigia::pilot {
 
-/// The distance to the nearest point of the plan's faces inside the cone of half angle
-/// @p half_angle round the bearing @p bearing of a base at @p base; nothing within @p reach_m.
-std::optional<double> nearest_in_beam(const FloorPlan& plan, const Pose2& base, double bearing,
-                                      double half_angle, double reach_m);
-
 /// Where the base is among the walls near it: an extended Kalman filter of the range ring's scans
 /// against the floor plan, one scan after the other carried on by odometry. It begins with the
 /// belief and is the pilot's own: walls tell where the door is better than landmarks across the

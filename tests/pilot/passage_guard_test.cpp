@@ -33,16 +33,6 @@ const std::vector<Pose2> kErrors{{0.03, -0.03, from_deg(1.0)},
                                  {0.03, 0.03, from_deg(-1.0)},
                                  {0.0, 0.05, from_deg(0.5)}};
 
-TEST(RingFix, ABeamMeetsTheNearestPointInItsCone) {
-  const FloorPlan plan = hall_with_narrow_door(0.7);
-  // Straight through the door to the far wall, past a jamb at an angle, onto the wall beside it.
-  EXPECT_NEAR(*nearest_in_beam(plan, {4.0, 3.0, 0.0}, 0.0, from_deg(7.5), 9.0), 6.0, 1e-12);
-  EXPECT_NEAR(*nearest_in_beam(plan, {4.0, 3.0, 0.0}, from_deg(15), from_deg(7.5), 9.0),
-              std::hypot(1.0, 0.35), 1e-12);
-  EXPECT_NEAR(*nearest_in_beam(plan, {4.0, 2.0, 0.0}, 0.0, from_deg(7.5), 9.0), 1.0, 1e-12);
-  EXPECT_FALSE(nearest_in_beam(plan, {4.0, 3.0, 0.0}, 0.0, from_deg(1.0), 2.0));
-}
-
 TEST(RingFix, FindsTheBaseBesideADoorWithinItsSigma) {
   RandomStream random(3, "errors");
   double nees = 0.0;
