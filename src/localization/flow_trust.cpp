@@ -9,7 +9,7 @@
 namespace vigia::localization {
 namespace {
 
-constexpr double kTrustMemory_s = 2.0;
+constexpr double kTrustMemory_s = 5.0;
 constexpr double kTrustSlack = 0.01;  // m, rad
 
 }  // namespace

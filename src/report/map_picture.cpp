@@ -95,7 +95,7 @@ std::vector<LegendEntry> legend_of(const MapDrive& drive, const DriveStyle& styl
     entries.push_back(line_entry(style.estimate, drive.estimate_name));
     entries.push_back(ellipse_entry(drive, style));
   }
-  if (!drive.odometry.empty()) entries.push_back(line_entry(style.odometry, "odometry only"));
+  if (!drive.odometry.empty()) entries.push_back(line_entry(style.odometry, "odometry"));
   if (!drive.world.landmarks.all().empty()) entries.push_back(landmark_entry());
   const auto fused = [](const MapLook& look) { return look.fused; };
   if (std::any_of(drive.looks.begin(), drive.looks.end(), fused))

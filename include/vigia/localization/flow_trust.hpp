@@ -9,7 +9,7 @@ namespace vigia::localization {
 
 /// Whether a flow keeps to the odometry over many frames. What one frame allows adds up: a flow of
 /// things that hang below the ceiling is too fast by the same share all the time, and no frame of
-/// it contradicts the wheels by itself. The differences of the last two seconds or so are summed
+/// it contradicts the wheels by itself. The differences of the last five seconds or so are summed
 /// and held against the odometry's covariance over the same way and what height and tilt explain.
 class FlowTrust {
  public:
