@@ -34,15 +34,13 @@ endif()
 if(NOT TARGET vigia::visp)
   add_library(vigia::visp INTERFACE IMPORTED)
   target_include_directories(vigia::visp SYSTEM INTERFACE ${VISP_INCLUDE_DIRS})
-  target_link_libraries(vigia::visp INTERFACE visp_core visp_blob visp_me visp_robot visp_vs
-                                              visp_visual_features)
+  target_link_libraries(vigia::visp INTERFACE visp_core visp_blob visp_me visp_vs visp_visual_features)
 endif()
 
 if(NOT TARGET vigia::opencv)
   add_library(vigia::opencv INTERFACE IMPORTED)
   target_include_directories(vigia::opencv SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
-  target_link_libraries(vigia::opencv INTERFACE opencv_core opencv_imgproc opencv_imgcodecs
-                                                opencv_videoio opencv_calib3d)
+  target_link_libraries(vigia::opencv INTERFACE opencv_core opencv_imgproc opencv_calib3d)
 endif()
 
 vigia_find(ompl 1.5)

@@ -4,9 +4,9 @@
 # vigia_test(MODULE SOURCES… [LINK …] [LABELS …] [STATISTICS FILTER] [COST N]) makes the GoogleTest
 # program test_MODULE; the label slow keeps its tests out of an ordinary run. CTest runs each test as a
 # process of its own, those of the greatest COST first. With VIGIA_TEST_SHARDS it runs the program in
-# that many shards instead, whose tests share a process: one that links ViSP loads 280 libraries before
-# its first test. The tests that FILTER (GoogleTest's patterns) names repeat for the sake of their
-# figures what others do once; sharded, they are an entry of their own with the label statistics.
+# that many shards instead, whose tests share a process. The tests that FILTER (GoogleTest's patterns)
+# names repeat for the sake of their figures
+# what others do once; sharded, they are an entry of their own with the label statistics.
 
 add_library(vigia_options INTERFACE)
 target_compile_features(vigia_options INTERFACE cxx_std_17)
@@ -47,6 +47,7 @@ function(vigia_test module)
   cmake_parse_arguments(ARG "" "STATISTICS;COST" "SOURCES;LINK;LABELS" ${ARGN})
   add_executable(test_${module} ${ARG_SOURCES})
   target_link_libraries(test_${module} PRIVATE vigia_options ${ARG_LINK} GTest::gmock GTest::gtest_main)
+  add_dependencies(test_${module} vigia_media)
   target_include_directories(test_${module} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(test_${module} PRIVATE
     VIGIA_SOURCE_DIR="${PROJECT_SOURCE_DIR}" VIGIA_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")

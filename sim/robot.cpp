@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace vigia::sim {
 namespace {
@@ -50,6 +51,14 @@ double clamp_rate(double rate, double limit) {
   return std::clamp(rate, -limit, limit);
 }
 
+Eigen::Matrix<double, 6, 2> head_columns(const HeadGeometry& mount, const HeadAngles& head) {
+  return camera_jacobian_head(mount, head);
+}
+
+Eigen::Matrix<double, 6, 2> head_columns(const FixedMount& /*mount*/, const HeadAngles& /*head*/) {
+  return Eigen::Matrix<double, 6, 2>::Zero();
+}
+
 }  // namespace
 
 Robot::Robot(const RobotParams& params, const Pose2& start, double zoom_mm, std::uint64_t seed,
@@ -70,7 +79,6 @@ Robot::Robot(const RobotParams& params, const Pose2& start, double zoom_mm, std:
   truth_.head.pan = std::clamp(0.0, limits.pan_min, limits.pan_max);
   truth_.head.tilt = std::clamp(0.0, limits.tilt_min, limits.tilt_max);
   encoder_ = truth_.head;
-  Robot::init();
 }
 
 void Robot::set_zoom_range(double min_mm, double max_mm) {
@@ -192,6 +200,36 @@ Eigen::Isometry3d Robot::camera_at(const CameraMount& mount, const Pose2& pose,
   const Eigen::Isometry3d wMr = ground_.place(pose);
   const bool on_head = std::holds_alternative<HeadGeometry>(mount);
   return on_head && mounting_ ? wMr * *mounting_ * rMc : wMr * rMc;
+}
+
+void Robot::place(const Pose2& pose, const HeadAngles& head) {
+  const HeadLimits& limits = params_.head_limits;
+  if (head.pan < limits.pan_min || head.pan > limits.pan_max || head.tilt < limits.tilt_min ||
+      head.tilt > limits.tilt_max)
+    throw std::invalid_argument("pan or tilt lies beyond the head's range");
+  truth_.pose = {pose.x, pose.y, wrap_angle(pose.theta)};
+  truth_.head = head;
+  truth_.base = {};
+  truth_.head_rates = {};
+  command({}, {});
+  encoder_ = truth_.head;
+  odometry_pose_ = wheel_pose_ = truth_.pose;
+  odometry_stamp_ = truth_.stamp;
+  turned_ = 0.0;
+}
+
+Eigen::Matrix<double, 6, Eigen::Dynamic> Robot::camera_jacobian() const {
+  const Eigen::Isometry3d rMc = mounted_camera(camera_, truth_.head);
+  const Eigen::Matrix<double, 6, 2> head =
+      std::visit([this](const auto& mount) { return head_columns(mount, truth_.head); }, camera_);
+  if (params_.base.omnidirectional()) {
+    Eigen::Matrix<double, 6, 5> jacobian;
+    jacobian << camera_jacobian_base(rMc), camera_twist_sideways(rMc), head;
+    return jacobian;
+  }
+  Eigen::Matrix<double, 6, 4> jacobian;
+  jacobian << camera_jacobian_base(rMc), head;
+  return jacobian;
 }
 
 }  // namespace vigia::sim

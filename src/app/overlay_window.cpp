@@ -2,9 +2,9 @@
 
 #include <visp3/core/vpDisplayException.h>
 #include <visp3/core/vpMouseButton.h>
-#include <visp3/gui/vpDisplayX.h>
 
 #include "vigia/core/error.hpp"
+#include "vigia/imaging/window_display.hpp"
 
 namespace vigia::app {
 
@@ -18,7 +18,7 @@ void OverlayWindow::show(const vpImage<vpRGBa>& picture) {
   try {
     if (!display_ || !same_size) {
       display_.reset();
-      display_ = std::make_unique<vpDisplayX>(picture_, -1, -1, "vigia track");
+      display_ = imaging::open_window(picture_, "vigia track");
     }
     vpDisplay::display(picture_);
     vpDisplay::flush(picture_);

@@ -2,10 +2,9 @@
 
 #include <memory>
 
+#include <visp3/core/vpDisplay.h>
 #include <visp3/core/vpImage.h>
 #include <visp3/core/vpRGBa.h>
-
-class vpDisplayX;
 
 namespace vigia::app {
 
@@ -22,7 +21,7 @@ class OverlayWindow {
 
  private:
   vpImage<vpRGBa> picture_;
-  std::unique_ptr<vpDisplayX> display_;
+  std::unique_ptr<vpDisplay> display_;
   bool closed_ = false;
 };
 

@@ -1,6 +1,7 @@
 #include "vigia/imaging/image_frame.hpp"
 
 #include "encoded_picture.hpp"
+#include "media.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -11,7 +12,6 @@
 #include <string_view>
 #include <vector>
 
-#include <opencv2/imgcodecs.hpp>
 #include <visp3/core/vpImageConvert.h>
 
 #include "vigia/core/error.hpp"
@@ -78,14 +78,7 @@ ImageFrame read_image(const std::filesystem::path& file) {
 }
 
 ImageFrame decode_picture(std::string_view bytes, const std::string& name) {
-  cv::Mat decoded;
-  try {
-    const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8UC1,
-                      const_cast<char*>(bytes.data()));  // imdecode only reads it
-    decoded = cv::imdecode(raw, cv::IMREAD_ANYCOLOR);
-  } catch (const cv::Exception&) {
-    decoded.release();
-  }
+  const cv::Mat decoded = media().decode(bytes);
   if (decoded.empty())
     throw InputError({name}, "this is no picture that can be decoded (PNG, JPEG, PNM, …)");
   if (decoded.channels() == 1) {
@@ -101,9 +94,8 @@ ImageFrame decode_picture(std::string_view bytes, const std::string& name) {
 void write_png(const std::filesystem::path& file, const vpImage<vpRGBa>& image) {
   cv::Mat bgr;
   vpImageConvert::convert(image, bgr);
-  std::vector<unsigned char> bytes;
-  if (bgr.empty() || !cv::imencode(".png", bgr, bytes))
-    throw InputError({file.string()}, "this picture cannot be encoded as PNG");
+  const std::vector<unsigned char> bytes = media().encode(".png", bgr, {});
+  if (bytes.empty()) throw InputError({file.string()}, "this picture cannot be encoded as PNG");
   write_file(file, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 

@@ -1,6 +1,6 @@
 #include "vigia/imaging/picture_source.hpp"
 
-#include "capture_source.hpp"
+#include "media.hpp"
 #include "stdin_source.hpp"
 
 #include <algorithm>
@@ -131,13 +131,13 @@ std::vector<fs::path> numbered_files(const std::string& pattern) {
 
 std::unique_ptr<PictureSource> open_pictures(const std::string& input, const SourceParams& params) {
   if (input == "-") return open_descriptor(STDIN_FILENO, params);
-  if (is_address(input)) return open_stream(parse_address(input), params);
-  if (is_device(input)) return open_device(input, params);
+  if (is_address(input)) return media().open_stream(parse_address(input), params);
+  if (is_device(input)) return media().open_device(input, params);
   const fs::path path(input);
   if (fs::is_directory(path)) return std::make_unique<FileList>(pictures_in(path));
   if (!fs::exists(path) && input.find('%') != std::string::npos)
     return std::make_unique<FileList>(numbered_files(input));
-  if (is_video_name(path) && fs::is_regular_file(path)) return open_video(path);
+  if (is_video_name(path) && fs::is_regular_file(path)) return media().open_video(path);
   return std::make_unique<FileList>(std::vector<fs::path>{path});
 }
 

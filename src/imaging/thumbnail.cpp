@@ -1,9 +1,10 @@
 #include "vigia/imaging/thumbnail.hpp"
 
+#include "media.hpp"
+
 #include <stdexcept>
 #include <vector>
 
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 namespace vigia::imaging {
@@ -41,8 +42,8 @@ std::string encode_jpeg(const vpImage<vpRGBa>& image, int quality) {
                      CV_8UC4, image.bitmap);
   cv::Mat bgr;
   cv::cvtColor(rgba, bgr, cv::COLOR_RGBA2BGR);
-  std::vector<unsigned char> bytes;
-  cv::imencode(".jpg", bgr, bytes, {cv::IMWRITE_JPEG_QUALITY, quality});
+  constexpr int kJpegQuality = 1;  // cv::IMWRITE_JPEG_QUALITY
+  const std::vector<unsigned char> bytes = media().encode(".jpg", bgr, {kJpegQuality, quality});
   return {bytes.begin(), bytes.end()};
 }
 

@@ -7,10 +7,12 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <visp3/core/vpImageConvert.h>
 
 #include "vigia/core/angle.hpp"
+#include "vigia/imaging/image_frame.hpp"
+#include "vigia/imaging/thumbnail.hpp"
 
 namespace vigia::tracking::testing {
 namespace {
@@ -166,9 +168,14 @@ cv::Mat3b digitise(const cv::Mat3f& light, const PhotoParams& params, RandomStre
             low + (place - static_cast<float>(index)) * (high - low) + noise(v, u)[c]);
       }
   if (params.jpeg > 0) {
-    std::vector<unsigned char> bytes;
-    cv::imencode(".jpg", out, bytes, {cv::IMWRITE_JPEG_QUALITY, params.jpeg});
-    out = cv::imdecode(bytes, cv::IMREAD_COLOR);
+    vpImage<vpRGBa> picture;
+    vpImageConvert::convert(out, picture);
+    const imaging::ImageFrame decoded =
+        imaging::decode_picture(imaging::encode_jpeg(picture, params.jpeg), "a photograph");
+    decoded.read_colour({0, 0, decoded.width(), decoded.height()}, picture.bitmap, decoded.width());
+    cv::Mat bgr;
+    vpImageConvert::convert(picture, bgr);
+    out = bgr;
   }
   return out;
 }

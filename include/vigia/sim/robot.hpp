@@ -2,8 +2,6 @@
 
 #include <optional>
 
-#include <visp3/robot/vpRobotSimulator.h>
-
 #include "vigia/core/actuation.hpp"
 #include "vigia/core/ground.hpp"
 #include "vigia/core/head.hpp"
@@ -40,24 +38,24 @@ struct RobotTruth {
   double look_log_focal_error = 0.0;
 };
 
-/// Unicycle or omnidirectional base with a pan-tilt head and a motorised zoom, as a ViSP simulated
-/// robot of four velocity axes (v, ω, pan, tilt), of five (v, ω, v to the left, pan, tilt) when it
-/// is omnidirectional, and the zoom beside them. Every axis is limited by itself in rate,
-/// acceleration and range; an axis that meets its stop stands still there. The base moves on exact
-/// arcs, in steps of at most 5 ms while it accelerates. A robot without a head has one that does
-/// not move.
-class Robot : public vpRobotSimulator {
+/// Unicycle or omnidirectional base with a pan-tilt head and a motorised zoom: four velocity axes
+/// (v, ω, pan, tilt), five (v, ω, v to the left, pan, tilt) when it is omnidirectional, and the
+/// zoom beside them. Every axis is limited by itself in rate, acceleration and range; an axis that
+/// meets its stop stands still there. The base moves on exact arcs, in steps of at most 5 ms while
+/// it accelerates. A robot without a head has one that does not move. VispRobot is the same as a
+/// vpRobotSimulator.
+class Robot {
  public:
   /// Stands still at @p start, the head at rest at (0, 0) or the nearest angle in its range.
   Robot(const RobotParams& params, const Pose2& start, double zoom_mm, std::uint64_t seed,
         const Ground& ground = {});
   Robot(const Robot&) = delete;
   Robot& operator=(const Robot&) = delete;
-  ~Robot() override = default;
+  ~Robot() = default;
 
   /// Range of the zoom motor, mm. Unlimited until it is set.
   void set_zoom_range(double min_mm, double max_mm);
-  /// The camera that camera_pose() and ViSP's interface mean. That of the head unless it is set.
+  /// The camera that camera_pose() and camera_jacobian() mean. That of the head unless it is set.
   void set_camera(const CameraMount& mount) { camera_ = mount; }
 
   /// @name Disturbances
@@ -72,6 +70,10 @@ class Robot : public vpRobotSimulator {
   /// Puts the base elsewhere, standing still; neither odometry nor the head notices.
   void kidnap(const Pose2& pose);
   /// @}
+
+  /// Puts base and head there at once, standing still; odometry and encoders count from there.
+  /// @throws std::invalid_argument for angles beyond the head's range
+  void place(const Pose2& pose, const HeadAngles& head);
 
   /// Asks for rates; they hold until the next call.
   void command(const BaseRates& base, const HeadRates& head);
@@ -97,36 +99,15 @@ class Robot : public vpRobotSimulator {
   Eigen::Isometry3d camera_pose(const CameraMount& mount) const;
   Eigen::Isometry3d camera_pose_after(const CameraMount& mount, double s) const;
 
-  /// @name ViSP's interface
-  /// The end effector is the camera c, the reference frame the world w. Articular velocities are
-  /// (v, ω, pan rate, tilt rate) or (v, ω, v to the left, pan rate, tilt rate), articular positions
-  /// (x, y, θ, pan, tilt). A frame that has no
-  /// meaning for a call, a vector of the wrong length and a wrong state are vpRobotExceptions.
-  /// @{
-  void init() override;
-  /// A column for each axis, twist of the camera in its own frame.
-  void get_eJe(vpMatrix& eJe) override;
-  /// The same with world axes.
-  void get_fJe(vpMatrix& fJe) override;
-  /// Change of the articular position since the last call, in articular coordinates.
-  void getDisplacement(const vpRobot::vpControlFrameType frame, vpColVector& q) override;
-  /// Articular, or the camera's pose wMc as (t, θu) for the camera, end-effector and reference
-  /// frames.
-  void getPosition(const vpRobot::vpControlFrameType frame, vpColVector& q) override;
-  using vpRobot::getPosition;
-  /// Puts the robot there at once, standing still. Articular only; odometry does not notice.
-  void setPosition(const vpRobot::vpControlFrameType frame, const vpColVector& q) override;
-  /// As command() with the zoom as it runs; the robot moves in advance(). Articular, or camera
-  /// frame: the articular velocity whose camera twist is nearest.
-  void setVelocity(const vpRobot::vpControlFrameType frame, const vpColVector& velocity) override;
-  vpRobotStateType setRobotState(const vpRobot::vpRobotStateType state) override;
-  /// @}
+  /// Twist (v, ω) of the camera in its own frame by a unit rate of each axis, 6×4 or 6×5.
+  Eigen::Matrix<double, 6, Eigen::Dynamic> camera_jacobian() const;
+  /// What command() asked for last.
+  const HeadRates& head_command() const { return head_command_; }
 
  private:
   void step(double h);
   Eigen::Isometry3d camera_at(const CameraMount& mount, const Pose2& pose,
                               const HeadAngles& head) const;
-  Eigen::Matrix<double, 6, Eigen::Dynamic> camera_jacobian() const;
 
   RobotParams params_;
   Ground ground_;
@@ -144,7 +125,6 @@ class Robot : public vpRobotSimulator {
   double backlash_ = 0.0;
   std::optional<WheelSlip> slip_;
   std::optional<Eigen::Isometry3d> mounting_;
-  vpColVector displacement_from_;
   RandomStream odometry_random_;
   RandomStream look_random_;
   RandomStream reading_random_;

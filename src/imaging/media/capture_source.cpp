@@ -144,16 +144,17 @@ class LiveCamera : public PictureSource {
 
 }  // namespace
 
-std::unique_ptr<PictureSource> open_video(const std::filesystem::path& file) {
+std::unique_ptr<PictureSource> capture_video(const std::filesystem::path& file) {
   return std::make_unique<VideoFile>(file);
 }
 
-std::unique_ptr<PictureSource> open_device(const std::string& device, const SourceParams& params) {
+std::unique_ptr<PictureSource> capture_device(const std::string& device,
+                                              const SourceParams& params) {
   return std::make_unique<LiveCamera>(StreamAddress{device, device}, cv::CAP_V4L2, params);
 }
 
-std::unique_ptr<PictureSource> open_stream(const StreamAddress& address,
-                                           const SourceParams& params) {
+std::unique_ptr<PictureSource> capture_stream(const StreamAddress& address,
+                                              const SourceParams& params) {
   return std::make_unique<LiveCamera>(address, cv::CAP_FFMPEG, params);
 }
 

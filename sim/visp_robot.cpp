@@ -1,24 +1,15 @@
-// The part of Robot that ViSP asks for.
-#include <algorithm>
+#include "vigia/sim/visp_robot.hpp"
+
+#include <stdexcept>
 #include <string>
 
 #include <visp3/core/vpPoseVector.h>
 #include <visp3/robot/vpRobotException.h>
 
-#include "vigia/sim/robot.hpp"
-
 namespace vigia::sim {
 namespace {
 
 using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic>;
-
-Eigen::Matrix<double, 6, 2> head_columns(const HeadGeometry& mount, const HeadAngles& head) {
-  return camera_jacobian_head(mount, head);
-}
-
-Eigen::Matrix<double, 6, 2> head_columns(const FixedMount& /*mount*/, const HeadAngles& /*head*/) {
-  return Eigen::Matrix<double, 6, 2>::Zero();
-}
 
 void to_visp(const Jacobian& from, vpMatrix& to) {
   const auto columns = static_cast<unsigned>(from.cols());
@@ -41,34 +32,27 @@ void require_length(const vpColVector& q, unsigned length, const char* what) {
 
 }  // namespace
 
-/// The camera's twist in its own frame by every axis.
-Eigen::Matrix<double, 6, Eigen::Dynamic> Robot::camera_jacobian() const {
-  const Eigen::Isometry3d rMc = mounted_camera(camera_, truth_.head);
-  const Eigen::Matrix<double, 6, 2> head =
-      std::visit([this](const auto& mount) { return head_columns(mount, truth_.head); }, camera_);
-  Jacobian jacobian(6, nDof);
-  if (params_.base.omnidirectional())
-    jacobian << camera_jacobian_base(rMc), camera_twist_sideways(rMc), head;
-  else
-    jacobian << camera_jacobian_base(rMc), head;
-  return jacobian;
+VispRobot::VispRobot(const RobotParams& params, const Pose2& start, double zoom_mm,
+                     std::uint64_t seed, const Ground& ground)
+    : Robot(params, start, zoom_mm, seed, ground) {
+  VispRobot::init();
 }
 
-void Robot::init() {
-  nDof = params_.base.omnidirectional() ? 5 : 4;
+void VispRobot::init() {
+  nDof = params().base.omnidirectional() ? 5 : 4;
   eJeAvailable = true;
   fJeAvailable = true;
   areJointLimitsAvailable = false;
-  setMaxTranslationVelocity(params_.base.speed);
-  setMaxRotationVelocity(params_.head_limits.rate);
-  Robot::getPosition(ARTICULAR_FRAME, displacement_from_);
+  setMaxTranslationVelocity(params().base.speed);
+  setMaxRotationVelocity(params().head_limits.rate);
+  VispRobot::getPosition(ARTICULAR_FRAME, displacement_from_);
 }
 
-void Robot::get_eJe(vpMatrix& jacobian) {
+void VispRobot::get_eJe(vpMatrix& jacobian) {
   to_visp(camera_jacobian(), jacobian);
 }
 
-void Robot::get_fJe(vpMatrix& jacobian) {
+void VispRobot::get_fJe(vpMatrix& jacobian) {
   const Eigen::Matrix3d wRc = camera_pose().linear();
   Jacobian twists = camera_jacobian();
   twists.topRows<3>() = wRc * twists.topRows<3>();
@@ -76,7 +60,7 @@ void Robot::get_fJe(vpMatrix& jacobian) {
   to_visp(twists, jacobian);
 }
 
-void Robot::getDisplacement(const vpRobot::vpControlFrameType frame, vpColVector& q) {
+void VispRobot::getDisplacement(const vpRobot::vpControlFrameType frame, vpColVector& q) {
   if (frame != ARTICULAR_FRAME) no_such_frame("getDisplacement");
   vpColVector now;
   getPosition(ARTICULAR_FRAME, now);
@@ -85,14 +69,14 @@ void Robot::getDisplacement(const vpRobot::vpControlFrameType frame, vpColVector
   displacement_from_ = now;
 }
 
-void Robot::getPosition(const vpRobot::vpControlFrameType frame, vpColVector& q) {
+void VispRobot::getPosition(const vpRobot::vpControlFrameType frame, vpColVector& q) {
   if (frame == ARTICULAR_FRAME) {
     q.resize(5);
-    q[0] = truth_.pose.x;
-    q[1] = truth_.pose.y;
-    q[2] = truth_.pose.theta;
-    q[3] = truth_.head.pan;
-    q[4] = truth_.head.tilt;
+    q[0] = truth().pose.x;
+    q[1] = truth().pose.y;
+    q[2] = truth().pose.theta;
+    q[3] = truth().head.pan;
+    q[4] = truth().head.tilt;
     return;
   }
   if (frame == MIXT_FRAME) no_such_frame("getPosition");
@@ -105,26 +89,17 @@ void Robot::getPosition(const vpRobot::vpControlFrameType frame, vpColVector& q)
   }
 }
 
-void Robot::setPosition(const vpRobot::vpControlFrameType frame, const vpColVector& q) {
+void VispRobot::setPosition(const vpRobot::vpControlFrameType frame, const vpColVector& q) {
   if (frame != ARTICULAR_FRAME) no_such_frame("setPosition");
   require_length(q, 5, "an articular position");
-  const HeadLimits& limits = params_.head_limits;
-  if (q[3] < limits.pan_min || q[3] > limits.pan_max || q[4] < limits.tilt_min ||
-      q[4] > limits.tilt_max)
-    throw vpRobotException(vpRobotException::positionOutOfRangeError,
-                           "pan or tilt lies beyond the head's range");
-  truth_.pose = {q[0], q[1], wrap_angle(q[2])};
-  truth_.head = {q[3], q[4]};
-  truth_.base = {};
-  truth_.head_rates = {};
-  command({}, {});
-  encoder_ = truth_.head;
-  odometry_pose_ = wheel_pose_ = truth_.pose;
-  odometry_stamp_ = truth_.stamp;
-  turned_ = 0.0;
+  try {
+    place({q[0], q[1], q[2]}, {q[3], q[4]});
+  } catch (const std::invalid_argument& error) {
+    throw vpRobotException(vpRobotException::positionOutOfRangeError, error.what());
+  }
 }
 
-void Robot::setVelocity(const vpRobot::vpControlFrameType frame, const vpColVector& velocity) {
+void VispRobot::setVelocity(const vpRobot::vpControlFrameType frame, const vpColVector& velocity) {
   if (getRobotState() != STATE_VELOCITY_CONTROL)
     throw vpRobotException(vpRobotException::wrongStateError,
                            "setVelocity needs the state STATE_VELOCITY_CONTROL");
@@ -142,10 +117,10 @@ void Robot::setVelocity(const vpRobot::vpControlFrameType frame, const vpColVect
   }
   const double side = axes == 5 ? rates[2] : 0.0;
   command({rates[0], rates[1], side},
-          {{rates[axes - 2], rates[axes - 1]}, head_command_.zoom_mm_s});
+          {{rates[axes - 2], rates[axes - 1]}, head_command().zoom_mm_s});
 }
 
-vpRobot::vpRobotStateType Robot::setRobotState(const vpRobot::vpRobotStateType state) {
+vpRobot::vpRobotStateType VispRobot::setRobotState(const vpRobot::vpRobotStateType state) {
   if (state == STATE_STOP) command({}, {});
   return vpRobot::setRobotState(state);
 }
