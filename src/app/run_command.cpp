@@ -30,7 +30,8 @@ struct RunOptions {
   std::vector<std::string> overrides;
   bool json = false;
   bool quiet = false;
-  bool no_report = false;
+  bool no_pictures = false;
+  bool no_report = false;  ///< or no pictures, which it is full of
 };
 
 void print_summary(const evaluation::DriveScore& score, const RunOptions& options,
@@ -49,7 +50,8 @@ void print_summary(const evaluation::DriveScore& score, const RunOptions& option
   const auto& p = score.perception;
   fmt::print("\n{} looks, {} stops ({:.1f} s), centring {:.2f} px rms, {:.1f} px max, {} losses\n",
              p.looks, p.stops, p.stopped_s, p.centring_rms_px, p.centring_max_px, p.target_losses);
-  fmt::print("\nrun folder: {}\npicture:    {}/map.png\n", folder, folder);
+  fmt::print("\nrun folder: {}\n", folder);
+  if (!options.no_pictures) fmt::print("picture:    {}/map.png\n", folder);
   if (!options.no_report) fmt::print("replay:     {}/report.html\n", folder);
 }
 
@@ -81,15 +83,17 @@ int run(const RunOptions& options) {
   FrameAlbum album;
   Progress progress(options.quiet || options.json);
   ReplayRecorder replay(scorer);
-  std::vector<mission::Listener*> listeners{&interruption, &scorer,   &picture,
-                                            &album,        &progress, &folder};
+  std::vector<mission::Listener*> listeners{&interruption, &scorer, &progress, &folder};
+  if (!options.no_pictures) listeners.insert(listeners.end(), {&picture, &album});
   if (!options.no_report) listeners.push_back(&replay);
   const auto outcome = mission::run_mission(setup, setup.seed, listeners);
   const std::string summary = evaluation::summary_json(scorer.score());
   folder.folder().add("summary.json", summary);
-  folder.folder().make("frames");
-  album.write(folder.folder().staging() / "frames");
-  picture.draw(scorer.score(), folder.folder().staging() / "map.png");
+  if (!options.no_pictures) {
+    folder.folder().make("frames");
+    album.write(folder.folder().staging() / "frames");
+    picture.draw(scorer.score(), folder.folder().staging() / "map.png");
+  }
   if (!options.no_report)
     folder.folder().add("report.html", report::replay_page({replay.run(command_of(options))}));
   folder.folder().commit();
@@ -123,8 +127,12 @@ void add_run(CLI::App& app, int& status) {
       ->allow_extra_args(false);
   command->add_flag("--json", options->json, "Print summary.json on stdout");
   command->add_flag("--no-report", options->no_report, "Write no report.html");
+  command->add_flag(
+      "--no-pictures", options->no_pictures,
+      "Write no frames/, no map.png and no report.html: the run starts and ends sooner");
   command->add_flag("--quiet", options->quiet, "No progress line");
   command->callback([options, &status] {
+    options->no_report = options->no_report || options->no_pictures;
     try {
       status = run(*options);
     } catch (const Interrupted& interrupt) {

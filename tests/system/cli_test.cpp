@@ -224,6 +224,28 @@ TEST_F(Program, LeavesTheReplayPageOutWhereItIsNotWanted) {
   EXPECT_TRUE(fs::exists(dir_.path() / "run/map.png"));
 }
 
+TEST_F(Program, LeavesAllPicturesOutWhereTheyAreNotWanted) {
+  ASSERT_EQ(vigia(short_run(dir_.path() / "with")).status, 1);
+  const auto result = vigia(short_run(dir_.path() / "without") + " --no-pictures");
+  ASSERT_EQ(result.status, 1);
+  EXPECT_THAT(result.out, Not(HasSubstr("map.png")));
+  for (const char* name : {"frames", "map.png", "report.html"})
+    EXPECT_FALSE(fs::exists(dir_.path() / "without" / name)) << name;
+  for (const char* name : {"summary.json", "ticks.csv", "events.jsonl"})
+    EXPECT_EQ(vigia::testing::read_text(dir_.path() / "without" / name),
+              vigia::testing::read_text(dir_.path() / "with" / name))
+        << name;
+}
+
+// What these need takes half a second and 70 MB to load; a campaign's processes do without.
+TEST_F(Program, StartsWithoutTheLibrariesOfPicturesVideosAndWindows) {
+  const auto needed = vigia::testing::run_process(std::string("ldd ") + VIGIA_PROGRAM, dir_.path());
+  ASSERT_EQ(needed.status, 0) << needed.err;
+  EXPECT_THAT(needed.out, HasSubstr("libvisp_core"));
+  for (const char* library : {"libvisp_robot", "libvisp_gui", "imgcodecs", "videoio", "libgdal"})
+    EXPECT_THAT(needed.out, Not(HasSubstr(library)));
+}
+
 TEST_F(Program, ReplaysTwoRunFoldersOnOnePage) {
   ASSERT_EQ(vigia(short_run(dir_.path() / "a") + " --seed 1").status, 1);
   ASSERT_EQ(vigia(short_run(dir_.path() / "b") + " --seed 2").status, 1);
