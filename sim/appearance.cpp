@@ -99,7 +99,7 @@ void describe_field_looks(ParamVisitor& v, Appearance& a) {
   v.integer("spectators", a.spectators, {0, 200}, "people in bright clothes round the field");
 }
 
-void describe_ceiling_looks(ParamVisitor& v, Appearance& a) {
+void describe_ceiling_looks(ParamVisitor& v, const FloorPlan& plan, Appearance& a) {
   v.number("patch_grey", a.patch_grey, kGrey, "of the ceiling's patches");
   v.number("patches_missing", a.patches_missing, {0.0, 1.0}, "share of them that have fallen off");
   v.number("patches_spurious", a.patches_spurious, {0.0, 1.0},
@@ -114,6 +114,8 @@ void describe_ceiling_looks(ParamVisitor& v, Appearance& a) {
   v.require(a.pipe_pitch_m == 0.0 || a.pipe_pitch_m >= kMinPitch_m, "pipe_pitch_m",
             "must be 0, or 0.5 or more");
   v.number("pipe_drop_m", a.pipe_drop_m, {0.0, 5.0}, "of their lower side below the ceiling");
+  v.require(a.pipe_pitch_m == 0.0 || a.pipe_drop_m < plan.ceiling_m(), "pipe_drop_m",
+            "pipes hang below the floor: pipe_drop_m must be less than the room's height");
 }
 
 void describe_stripe(ParamVisitor& v, Stripe& stripe) {
@@ -185,7 +187,7 @@ void describe_appearance(ParamVisitor& v, const WorldMap& world, Appearance& app
     v.where(world.field.has_value(), "the world has a `field`",
             [&] { describe_field_looks(v, appearance); });
     v.where(world.ceiling.has_value(), "the world has a `ceiling`",
-            [&] { describe_ceiling_looks(v, appearance); });
+            [&] { describe_ceiling_looks(v, world.plan, appearance); });
   });
   v.each("stripes", "straight lines painted on the floor or the ceiling",
          [&] { describe_stripe(v, appearance.stripes.emplace_back()); });

@@ -233,12 +233,20 @@ std::optional<DirectedFit> fit_directed(const PatchWindow& window, PatchShape st
   return DirectedFit{best, std::min(0.5 * less / (best.noise * best.noise), 1e3)};
 }
 
+/// A dark spot of a textured ceiling passes for a patch out of focus, with residuals that go
+/// together; those of a patch are noise, or its edges are sharp.
+double max_misfit(const PatchFit& fit, const PatchFinderParams& params) {
+  const double contrast = fit.shape.ground - fit.shape.patch;
+  return params.max_misfit * contrast * std::min(1.0, params.blur_px / fit.shape.blur);
+}
+
 bool is_patch(const PatchFit& fit, const PatchFinderParams& params) {
   const double contrast = fit.shape.ground - fit.shape.patch;
   return contrast >= params.min_contrast &&
          std::abs(fit.shape.log_scale) <= params.max_scale_error &&
          fit.noise <= std::max(params.max_misfit * contrast, params.max_noise) &&
-         fit.covariance.allFinite() && fit.covariance.topLeftCorner<2, 2>().trace() < 4.0;
+         fit.misfit <= max_misfit(fit, params) && fit.covariance.allFinite() &&
+         fit.covariance.topLeftCorner<2, 2>().trace() < 4.0;
 }
 
 /// Whether the patch reaches beyond what the camera shows.

@@ -253,7 +253,9 @@ std::optional<PatchFit> fit_patch(const PatchWindow& window, const PatchShape& s
         (fit.noise * fit.noise) * solver.solve(FitNormal::Identity()).topLeftCorner<3, 3>();
     fit.shape = stepped(fit.shape, step);
     if (i > 3 && step.head<2>().norm() < 1e-3 && std::abs(step[2]) < 1e-4) {
-      fit.covariance *= correlation_factor(pixels, fit.shape, params);
+      const double factor = correlation_factor(pixels, fit.shape, params);
+      fit.covariance *= factor;
+      fit.misfit = fit.noise * std::sqrt(1.0 - 1.0 / std::sqrt(factor));
       fit.shape.angle = wrap_angle(fit.shape.angle);
       return fit;
     }

@@ -37,6 +37,7 @@ struct PatchFit {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Identity();  ///< of (u, v, angle)
   double square = 0.0;  ///< Σ of the squared residuals, priors in it
   double noise = 0.0;   ///< rms of the residuals, with the degrees of freedom taken off
+  double misfit = 0.0;  ///< rms of what neighbouring residuals share: no noise, but another shape
 };
 
 /// Fits the patch's shape, a body and its tongue with blurred edges, to the grey values about it by

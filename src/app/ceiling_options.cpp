@@ -12,6 +12,8 @@
 namespace vigia::app {
 namespace {
 
+constexpr double kMaxPatch_m = 1.0;
+constexpr double kMaxLengthByPitch = 0.4;
 constexpr const char* kUsualPlacement = "0.005:1.3";  // of whoever hangs them by a string
 
 std::optional<double> parsed_number(std::string_view text) {
@@ -67,7 +69,12 @@ perception::CeilingView ceiling_view(const CeilingOptions& options, const std::s
   view.grid.polarity = !options.plain;
   if (!options.patch_m.empty())
     std::tie(view.grid.length_m, view.grid.width_m) =
-        parse_patch("--patch-m", options.patch_m, 0.005, 0.5 * options.pitch_m);
+        parse_patch("--patch-m", options.patch_m, 0.005, kMaxPatch_m);
+  if (view.grid.length_m > kMaxLengthByPitch * options.pitch_m)
+    throw InputError(
+        fmt::format("--pitch-m {}: patches of {} m would not lie apart; the pitch must be at least "
+                    "{} of their length (--patch-m)",
+                    options.pitch_m, view.grid.length_m, 1.0 / kMaxLengthByPitch));
   parse_placement(options.placement.empty() ? kUsualPlacement : options.placement, view.grid);
   return view;
 }

@@ -85,5 +85,17 @@ TEST(CeilingMission, APatchThatIsAsWideAsLongIsRefused) {
   }
 }
 
+TEST(CeilingMission, PipesThatHangBelowTheFloorAreRefused) {
+  EXPECT_NO_THROW(
+      load_mission(kHall, {"world.appearance.pipe_pitch_m=1", "world.appearance.pipe_drop_m=2.6"}));
+  try {
+    load_mission(kHall, {"world.appearance.pipe_pitch_m=1", "world.appearance.pipe_drop_m=4"});
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("pipes hang below the floor"), std::string::npos)
+        << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace vigia::mission

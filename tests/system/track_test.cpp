@@ -235,6 +235,8 @@ TEST_F(Track, MistakesOfTheCommandAreNamed) {
       {picture + " --tracker ceiling --ids 3", "patches have no --ids"},
       {picture + " --tracker ceiling --rise-m 2 --placement 1:2 --camera " + camera,
        "--placement: found '1:2', must be METRES:DEGREES"},
+      {picture + " --tracker ceiling --rise-m 2 --pitch-m 0.05 --camera " + camera,
+       "--pitch-m 0.05: patches of 0.09 m would not lie apart"},
       {picture + " --patch-px 20:7", "are for --tracker ceiling"},
       {picture + " --camera " + camera, "--camera: how large are the landmarks?"},
       {picture + " --size 0.2", "only with --camera"},

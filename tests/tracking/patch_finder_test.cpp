@@ -206,5 +206,67 @@ TEST(PatchFinder, ClaimsNoMoreThanItKnowsWhateverTheCeilingsTexture) {
   EXPECT_LT(textured.first, 1.7);
 }
 
+/// A ceiling with nothing on it but dark and bright spots as large as a patch is wide.
+vpImage<unsigned char> spotted_ceiling(double texture, double neighbours_px, RandomStream& random) {
+  constexpr int kHeight = 480;
+  constexpr int kWidth = 640;
+  cv::Mat ground(kHeight, kWidth, CV_32F);
+  for (int v = 0; v < kHeight; ++v)
+    for (int u = 0; u < kWidth; ++u) ground.at<float>(v, u) = static_cast<float>(random.normal());
+  cv::GaussianBlur(ground, ground, {}, neighbours_px);
+  cv::Scalar mean;
+  cv::Scalar sigma;
+  cv::meanStdDev(ground, mean, sigma);
+  ground = 190.0 + ground * (texture / sigma[0]);
+  cv::GaussianBlur(ground, ground, {}, 0.7);
+  vpImage<unsigned char> image(kHeight, kWidth);
+  for (int v = 0; v < kHeight; ++v)
+    for (int u = 0; u < kWidth; ++u)
+      image[v][u] =
+          cv::saturate_cast<unsigned char>(ground.at<float>(v, u) + 4.0 * random.normal());
+  return image;
+}
+
+TEST(PatchFinder, TakesNoDarkSpotOfATexturedCeilingForAPatch) {
+  constexpr int kPictures = 6;
+  for (const bool polarity : {true, false}) {
+    PatchFinderParams params;
+    params.polarity = polarity;
+    const PatchFinder finder(params);
+    RandomStream random(9, "spots");
+    std::size_t found = 0;
+    int looked_at = 0;
+    for (int i = 0; i < kPictures; ++i) {
+      const auto image = spotted_ceiling(20.0, 3.0, random);
+      const PatchScan scan = finder.find(imaging::ImageFrame(image));
+      found += scan.patches.size();
+      looked_at += scan.rejected;
+    }
+    EXPECT_EQ(found, 0U);  // before, 41 and 20
+    EXPECT_GT(looked_at, 100);
+  }
+}
+
+TEST(PatchFinder, FindsPatchesInDarkNoisyPictures) {
+  PatchFinderParams params;
+  params.length_px = 22.68;
+  params.width_px = 7.56;
+  const PatchFinder finder(params);
+  RandomStream random(11, "dark");
+  int found = 0;
+  constexpr int kPictures = 40;
+  for (int i = 0; i < kPictures; ++i) {
+    const Eigen::Vector2d uv(random.uniform(33.0, 39.0), random.uniform(33.0, 39.0));
+    auto image = textured_picture(uv, random.uniform(-kPi, kPi), params, 0.0, random);
+    // Two fifths of the light, and twice the noise.
+    for (unsigned int v = 0; v < image.getHeight(); ++v)
+      for (unsigned int u = 0; u < image.getWidth(); ++u)
+        image[v][u] = cv::saturate_cast<unsigned char>(0.4 * image[v][u] + 8.0 * random.normal());
+    const PatchScan scan = finder.find(imaging::ImageFrame(image));
+    found += scan.patches.size() == 1 ? 1 : 0;
+  }
+  EXPECT_EQ(found, kPictures);
+}
+
 }  // namespace
 }  // namespace vigia::tracking

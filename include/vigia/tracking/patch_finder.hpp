@@ -15,8 +15,10 @@ struct PatchFinderParams {
   double max_scale_error = 0.1;  ///< a patch of another size is none
   double blur_px = 0.76;       ///< σ of an edge, the pixel's own share in it, where the fit begins
   double min_contrast = 40.0;  ///< to the ceiling beside it, grey levels
-  double max_misfit = 0.12;    ///< rms of the fit's residuals by the contrast, at most
-  double max_noise = 12.0;     ///< … or this, grey levels, where that is more
+  /// Rms of the fit's residuals by the contrast, at most; of what neighbours share in them, by so
+  /// much less as the edges are blurred more than expected.
+  double max_misfit = 0.12;
+  double max_noise = 12.0;  ///< … or this, grey levels, where that is more
 };
 
 /// What a frame shows of a patched ceiling.
