@@ -1,7 +1,9 @@
 #include "media.hpp"
 
+#include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 
 #include <dlfcn.h>
 
@@ -10,9 +12,16 @@
 namespace vigia::imaging {
 namespace {
 
-// The dynamic loader looks along the program's run path. The module stays for good.
+constexpr int kLoading = RTLD_LAZY | RTLD_LOCAL;
+
+// Beside the program as it is built and installed; for other programs along their run path, which
+// the sanitizers' dlopen does not know. The module stays for good.
 const Media& load_media() {
-  void* const module = dlopen(VIGIA_MEDIA_MODULE, RTLD_LAZY | RTLD_LOCAL);
+  std::error_code unknown;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", unknown);
+  const auto beside = program.parent_path().parent_path() / VIGIA_MODULE_DIR / VIGIA_MEDIA_MODULE;
+  void* module = dlopen(beside.c_str(), kLoading);
+  if (module == nullptr) module = dlopen(VIGIA_MEDIA_MODULE, kLoading);
   void* const entry = module != nullptr ? dlsym(module, "vigia_media") : nullptr;
   if (entry == nullptr)
     throw std::runtime_error(std::string("vigia's module for pictures cannot be loaded: ") +
