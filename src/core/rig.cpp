@@ -94,7 +94,8 @@ std::optional<StereoCameras> stereo_cameras(const Rig& rig) {
   const Intrinsics other = lens(right);
   if ((place(left) - mirrored).norm() > kAlike || place(left).y() < kAlike || k.px != other.px ||
       k.u0 != other.u0 || k.v0 != other.v0 || k.kdu != other.kdu || k.width != other.width ||
-      k.height != other.height)
+      k.height != other.height || left->period_s != right->period_s ||
+      left->phase_s != right->phase_s || left->latency_s != right->latency_s)
     return std::nullopt;
   return StereoCameras{left->id,        right->id,       2.0 * place(left).y(),
                        place(left).x(), place(left).z(), k};

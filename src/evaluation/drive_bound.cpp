@@ -55,6 +55,7 @@ void DriveBound::States::move_looks_and_corners(const Move& move, const Odometry
 }
 
 Eigen::Matrix3d DriveBound::States::covariance() const {
+  if (by_landmarks) return looks.covariance();
   if (corners) return corners->belief().covariance;
   return ceiling ? ceiling->belief().covariance : looks.covariance();
 }
@@ -120,7 +121,9 @@ void DriveBound::learn(const Observation& observation, const mission::ExposureTr
   }
   const Landmark* landmark =
       true_landmark(observation, setup_.landmarks, setup_.on_ground, truth.pose, truth.bias);
-  if (landmark != nullptr) states_.looks.update(truth.pose, truth.bias, *landmark, observation);
+  if (landmark == nullptr) return;
+  states_.by_landmarks = true;
+  states_.looks.update(truth.pose, truth.bias, *landmark, observation);
 }
 
 Eigen::Matrix3d DriveBound::covariance() const {

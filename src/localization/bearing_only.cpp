@@ -182,7 +182,7 @@ void BearingOnlyLocalizer::start(const Prior& prior) {
   begin_look(0);
   lost_ = false;
   rejections_ = 0;
-  rejected_looks_.clear();
+  rejected_spans_.clear();
   remembered_.clear();
   belief_.hypotheses.clear();
   refresh_belief();
@@ -244,7 +244,7 @@ std::optional<BearingOnlyLocalizer::Sightline> BearingOnlyLocalizer::sightline(
   if (!bearing) return std::nullopt;
   const Eigen::Isometry3d rMc = model_.on_ground().rig.at(shot.camera).rMc(shot.head);
   Sightline seen;
-  seen.look = shot.look;
+  seen.span = span_of(shot, model_.on_ground().rig);
   seen.landmark = named_landmark(observation);
   seen.eye_r = rMc.translation().head<2>();
   seen.height_m = rMc.translation().z();
@@ -276,7 +276,7 @@ UpdateResult BearingOnlyLocalizer::update(const Observation& observation) {
     return {status, seen->landmark, 0.0, 0};
   }
   const UpdateResult result = fuse(observation, *seen);
-  monitor(result, shot.look);
+  monitor(result, span_of(shot, model_.on_ground().rig));
   refresh_belief();
   return result;
 }
@@ -351,23 +351,25 @@ UpdateResult BearingOnlyLocalizer::fuse(const Observation& observation, const Si
   return {UpdateStatus::fused, landmark.id, nis, 1};
 }
 
-void BearingOnlyLocalizer::monitor(const UpdateResult& result, LookId look) {
+void BearingOnlyLocalizer::monitor(const UpdateResult& result, const ImageSpan& span) {
   if (result.status == UpdateStatus::gated || result.status == UpdateStatus::degenerate) {
     ++rejections_;
-    rejected_looks_.insert(look);
+    rejected_spans_.insert(span);
   }
   if (result.status == UpdateStatus::fused) {
     rejections_ = 0;
-    rejected_looks_.clear();
+    rejected_spans_.clear();
   }
   if (rejections_ >= params_.lost_rejections &&
-      rejected_looks_.size() >= static_cast<std::size_t>(params_.lost_looks))
+      rejected_spans_.size() >= static_cast<std::size_t>(params_.lost_looks))
     lose();
 }
 
 void BearingOnlyLocalizer::remember(const Sightline& seen) {
   // One direction of a look counts: its images share their error.
-  if (!remembered_.empty() && remembered_.back().look == seen.look) return;
+  const bool known = std::any_of(remembered_.begin(), remembered_.end(),
+                                 [&](const Sightline& other) { return other.span == seen.span; });
+  if (known) return;
   remembered_.push_back(seen);
   remembered_.back().variance += params_.sensor.look_angle * params_.sensor.look_angle;
   if (remembered_.size() > static_cast<std::size_t>(params_.search_looks)) remembered_.pop_front();

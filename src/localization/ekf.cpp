@@ -61,7 +61,7 @@ void EkfLocalizer::reset(Stamp stamp, const std::optional<Prior>& prior) {
   mean_speed_.reset();
   horizon_ = stamp;
   rejections_ = 0;
-  rejected_looks_.clear();
+  rejected_spans_.clear();
   first_of_looks_.clear();
   innovation_evidence_ = 0.0;
   said_lost_ = false;
@@ -104,7 +104,7 @@ UpdateResult EkfLocalizer::process(const Observation& observation) {
   const Shot& shot = vigia::shot_of(observation);
   if (shot.stamp < horizon_) return {UpdateStatus::too_late, std::nullopt, 0.0, 0};
   const std::vector<Event> later = roll_back(shot.stamp);
-  const bool first_of_look = state().look != shot.look;
+  const bool first_of_look = begins_look(shot);
   const LookState at = with_look(state(), shot);
   Association found = model_.associate(observation, at);
   if (found.match)
@@ -112,7 +112,7 @@ UpdateResult EkfLocalizer::process(const Observation& observation) {
   else if (!events_.empty() && events_.back().extrapolated)
     events_.pop_back();
   for (const Event& event : later) append(event.input, event.extrapolated);
-  monitor_innovations(found.result, shot.look, first_of_look);
+  monitor_innovations(found.result, span_of(shot, model_.on_ground().rig), first_of_look);
   return found.result;
 }
 
@@ -136,10 +136,12 @@ void EkfLocalizer::move_by(const Motion& motion, Event& event) const {
 void EkfLocalizer::fuse(const Shot& shot, Event& event) const {
   Window& window = event.window;
   event.after = with_look(event.after, shot);
-  if (window.events == 0 || window.start.look != shot.look) {
+  const bool directed = on_head(model_.on_ground().rig.at(shot.camera));
+  if (window.events == 0 || (directed && window.start.look != shot.look)) {
     window = {};
     window.start = event.after;
   }
+  window.fixed_camera = window.fixed_camera || !directed;
   ++window.events;
   ++window.images;
   window.last_image = shot.stamp;
@@ -151,7 +153,9 @@ void EkfLocalizer::fuse(const Shot& shot, Event& event) const {
   }
   event.after = smoothed->filtered.back();
   window.trajectory = std::move(smoothed->trajectory);
-  if (window.events > kLookEvents) {
+  // A fixed camera looks for ever: of its images none is left out, the older ones stay as they are.
+  if (window.events > kLookEvents ||
+      (window.fixed_camera && window.images >= params_.look_images)) {
     const auto half = static_cast<std::ptrdiff_t>(window.events / 2);
     window.start = smoothed->filtered[static_cast<std::size_t>(half) - 1];
     window.trajectory.erase(window.trajectory.begin(), window.trajectory.begin() + half);
@@ -260,21 +264,25 @@ void EkfLocalizer::forget_old() {
   }
 }
 
-void EkfLocalizer::monitor_innovations(const UpdateResult& result, LookId look,
+bool EkfLocalizer::begins_look(const Shot& shot) const {
+  return state().look != shot.look && on_head(model_.on_ground().rig.at(shot.camera));
+}
+
+void EkfLocalizer::monitor_innovations(const UpdateResult& result, const ImageSpan& span,
                                        bool first_of_look) {
   if (result.status == UpdateStatus::gated || result.status == UpdateStatus::degenerate) {
     ++rejections_;
-    rejected_looks_.insert(look);
+    rejected_spans_.insert(span);
   }
   if (result.status == UpdateStatus::fused) {
     rejections_ = 0;
-    rejected_looks_.clear();
+    rejected_spans_.clear();
     if (first_of_look) first_of_looks_.push_back(result);
     if (first_of_looks_.size() > static_cast<std::size_t>(params_.nis_looks))
       first_of_looks_.pop_front();
   }
   const bool rejected = rejections_ >= params_.lost_rejections &&
-                        rejected_looks_.size() >= static_cast<std::size_t>(params_.lost_looks);
+                        rejected_spans_.size() >= static_cast<std::size_t>(params_.lost_looks);
   const auto [nis, dof] = innovations_of_looks();
   if (result.status == UpdateStatus::fused && first_of_look)
     innovation_evidence_ = tail_evidence(chi_square_tail(nis, dof), params_.nis_probability);

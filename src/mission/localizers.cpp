@@ -28,13 +28,20 @@ bool has_landmarks(const MissionSetup& setup) {
   return !setup.world.landmarks.all().empty();
 }
 
+bool has_eye(const MissionSetup& setup, std::string_view eye) {
+  const Rig rig = setup.robot.rig();
+  return std::any_of(rig.cameras.begin(), rig.cameras.end(),
+                     [&](const Camera& camera) { return eye_of(camera, setup.world, rig) == eye; });
+}
+
 /// A field, and an eye that scans it.
 bool has_field(const MissionSetup& setup) {
-  const Rig rig = setup.robot.rig();
-  return setup.world.field &&
-         std::any_of(rig.cameras.begin(), rig.cameras.end(), [&](const Camera& camera) {
-           return std::string_view(eye_of(camera, setup.world, rig)) == "field";
-         });
+  return setup.world.field && has_eye(setup, "field");
+}
+
+/// Landmarks, and an eye that finds them.
+bool sees_landmarks(const MissionSetup& setup) {
+  return has_landmarks(setup) && has_eye(setup, "landmark");
 }
 
 bool has_ceiling(const MissionSetup& setup) {
@@ -121,10 +128,10 @@ LocalizerPtr make_bearing_only(const MissionSetup& setup, std::uint64_t /*seed*/
 const std::vector<LocalizerEntry>& localizers() {
   static const std::vector<LocalizerEntry> table{
       {{"ekf", "extended Kalman filter on looks at discs, patterns and tags (Armingol §5)",
-        "landmarks"},
+        "landmarks, and a camera that finds them"},
        true,
        FirstPose::recovery,
-       &has_landmarks,
+       &sees_landmarks,
        &make_ekf},
       {{"odometry", "dead reckoning alone", "nothing"},
        true,
@@ -137,10 +144,10 @@ const std::vector<LocalizerEntry>& localizers() {
        FirstPose::itself,
        &has_patterns,
        &make_pattern_fix},
-      {{"bearing_only", "directions to landmarks alone", "landmarks"},
+      {{"bearing_only", "directions to landmarks alone", "landmarks, and a camera that finds them"},
        false,
        FirstPose::looks,
-       &has_landmarks,
+       &sees_landmarks,
        &make_bearing_only},
       {{"field_grid",
         "refined matches of a mirror camera's scans with a field's lines, followed in time as "
@@ -173,7 +180,9 @@ const std::vector<LocalizerEntry>& localizers() {
       {{"running_fix",
         "a goal's corner ranged from two points of the way: two circles, the heading by odometry "
         "(Bais)",
-        "a level stereo pair, and a field with goals in the world"},
+        "a field with goals in the world, and a level stereo pair: two cameras, the left one "
+        "first, alike "
+        "in place, lens and timing"},
        true,
        FirstPose::prior,
        &has_corners,
@@ -181,7 +190,9 @@ const std::vector<LocalizerEntry>& localizers() {
       {{"ml_fix",
         "range and bearing of goals' corners by maximum likelihood, the errors of the pair's "
         "calibration as states (after Bais)",
-        "a level stereo pair, and a field with goals in the world"},
+        "a field with goals in the world, and a level stereo pair: two cameras, the left one "
+        "first, alike "
+        "in place, lens and timing"},
        true,
        FirstPose::itself,
        &has_corners,

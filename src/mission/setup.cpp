@@ -147,8 +147,14 @@ void describe_localizers(ParamVisitor& v, MissionSetup& setup) {
     require_fit(v, "localizers", setup);
     return;
   }
-  v.name("primary", setup.primary, known, primary);
   setup.localizers = usual_localizers(setup);
+  const bool blind = !find_name(localizers(), setup.primary)->fits(setup);
+  if (v.reader() != nullptr && blind && !setup.localizers.empty()) {
+    const auto sighted = std::find_if(setup.localizers.begin(), setup.localizers.end(),
+                                      [](const std::string& name) { return name != "odometry"; });
+    setup.primary = sighted == setup.localizers.end() ? setup.localizers.front() : *sighted;
+  }
+  v.name("primary", setup.primary, known, primary);
   if (!contains(setup.localizers, setup.primary)) setup.localizers.push_back(setup.primary);
   require_fit(v, "primary", setup);
   v.names("localizers", setup.localizers, known, run);
@@ -204,6 +210,15 @@ void describe_localization(ParamVisitor& v, MissionSetup& setup) {
 /// Eyes for landmarks read pinhole images, the eye for a field those of a mirror in colour;
 /// patterns are told apart by their colours.
 void require_cameras(ParamVisitor& v, const MissionSetup& setup) {
+  const auto& cameras = setup.robot.cameras;
+  const auto upward =
+      std::count_if(cameras.begin(), cameras.end(),
+                    [](const sim::CameraSetup& camera) { return looks_up(camera.camera); });
+  v.require(
+      !setup.world.ceiling || upward < 2, "robot",
+      std::to_string(upward) +
+          " cameras look up at the world's ceiling; its localizer reads one of them, and only "
+          "one may be there");
   const auto& landmarks = setup.world.landmarks.all();
   const bool patterns =
       std::any_of(landmarks.begin(), landmarks.end(), [](const Landmark& landmark) {

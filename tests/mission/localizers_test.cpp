@@ -67,8 +67,11 @@ TEST(Localizers, WithoutAHeadThatLooksAroundNobodyFindsHimselfByLooks) {
 }
 
 TEST(Localizers, WithoutLandmarksThoseThatNeedThemAreRefused) {
-  EXPECT_THAT(refusal({"world.landmarks=[]", "planner.policy=nearest"}),
+  EXPECT_THAT(refusal({"world.landmarks=[]", "planner.policy=nearest", "localization.primary=ekf"}),
               HasSubstr("'ekf' needs landmarks"));
+  // Whom nobody named is left out.
+  const auto setup = load("armingol-room", {"world.landmarks=[]", "planner.policy=nearest"});
+  EXPECT_EQ(setup.primary, "odometry");
   EXPECT_EQ(refusal({"world.landmarks=[]", "localization.primary=odometry"}), "");
 }
 

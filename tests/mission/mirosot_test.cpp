@@ -49,7 +49,17 @@ TEST(MirosotMission, CalibrationErrorsThatTheRobotDoesNotKnowOfCostIt) {
 TEST(MirosotMission, ItsLocalizersNeedAPairOfCameras) {
   const std::string one = "robot={name: one, cameras: [{mount: fixed, focal_px: 500}]}";
   EXPECT_THAT(refusal({one, "localization.localizers=[ml_fix]", "localization.primary=ml_fix"}),
-              ::testing::HasSubstr("'ml_fix' needs a level stereo pair, and a field with goals"));
+              ::testing::HasSubstr(
+                  "'ml_fix' needs a field with goals in the world, and a level stereo pair"));
+}
+
+TEST(MirosotMission, APairThatDoesNotExposeTogetherIsNone) {
+  EXPECT_THAT(
+      refusal(
+          {"robot={name: two, cameras: [{mount: fixed, mount_m: [0, 0.03, 0.1], focal_px: 500}, "
+           "{id: 1, mount: fixed, mount_m: [0, -0.03, 0.1], focal_px: 500, latency_s: 0.1}]}",
+           "localization.localizers=[ml_fix]", "localization.primary=ml_fix"}),
+      ::testing::HasSubstr("'ml_fix' needs"));
 }
 
 TEST(MirosotMission, ARunningFixNeedsAPrior) {

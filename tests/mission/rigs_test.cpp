@@ -65,6 +65,80 @@ TEST(Rigs, AHeadDirectsACameraThatHasNoZoom) {
   EXPECT_LT(scorer.score().localizers.at("ekf").position_rmse_m, 0.05);
 }
 
+class LossLog : public Listener {
+ public:
+  void on_start(const MissionStart& start) override { names_ = start.setup.localizers; }
+  void on_tick(const Tick& tick) override {
+    if (kidnapped_s == 0.0) return;
+    for (std::size_t i = 0; i < names_.size(); ++i)
+      if (tick.estimator.localizers[i].belief->status == BeliefStatus::lost)
+        said_s.try_emplace(names_[i], tick.estimator.now.seconds());
+  }
+  void on_event(const Event& event) override {
+    if (event.kind == EventKind::kidnapped) kidnapped_s = event.stamp.seconds();
+    if (event.kind == EventKind::lost && kidnapped_s == 0.0) ++false_alarms;
+  }
+  double kidnapped_s = 0.0;
+  int false_alarms = 0;
+  std::map<std::string, double> said_s;
+
+ private:
+  std::vector<std::string> names_;
+};
+
+MissionSetup tag_room(const std::string& cameras, const std::vector<std::string>& more) {
+  std::vector<std::string> overrides{"robot={name: other, " + cameras + "}"};
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  return load_mission(std::string(VIGIA_SOURCE_DIR) + "/config/missions/tag-room.yaml", overrides);
+}
+
+const std::string kThreeFixed =
+    "{id: 4, mount: fixed, mount_m: [0.1, 0, 1.2], focal_px: 250, width_px: 320, height_px: 240, "
+    "period_s: 0.2}, "
+    "{id: 5, mount: fixed, mount_m: [0, 0.1, 1.2], rpy_deg: [0, 0, 120], focal_px: 250, width_px: "
+    "320, "
+    "height_px: 240, period_s: 0.2}, "
+    "{id: 6, mount: fixed, mount_m: [0, -0.1, 1.2], rpy_deg: [0, 0, 240], focal_px: 250, width_px: "
+    "320, "
+    "height_px: 240, period_s: 0.2}";
+
+// No look of a fixed camera ever ends; what contradicts the belief counts by the second.
+TEST(Rigs, ARobotOfFixedCamerasSaysThatItIsLostOnceItWasTakenAway) {
+  for (const std::uint64_t seed : {3, 4}) {
+    LossLog log;
+    run_mission(tag_room("cameras: [" + kThreeFixed + "]",
+                         {"timeout_s=24", "disturbances.kidnapping={earliest_s: 10, latest_s: 12}",
+                          "localization.localizers=[ekf, bearing_only]"}),
+                seed, {&log});
+    ASSERT_GT(log.kidnapped_s, 0.0);
+    EXPECT_EQ(log.false_alarms, 0);
+    for (const char* name : {"ekf", "bearing_only"}) {
+      ASSERT_EQ(log.said_s.count(name), 1U) << name << ", seed " << seed;
+      EXPECT_LT(log.said_s[name], log.kidnapped_s + 4.0) << name << ", seed " << seed;
+    }
+  }
+}
+
+TEST(Rigs, AFixedCameraBesideAHeadRaisesNoAlarm) {
+  LossLog log;
+  evaluation::DriveScorer scorer;
+  const MissionSetup setup = tag_room(
+      "head: {mount_m: [0.1, 0, 1.2]}, cameras: [{id: 1, focal_px: 700}, " + kThreeFixed + "]",
+      {"timeout_s=60"});
+  run_mission(setup, 5, {&log, &scorer});
+  EXPECT_EQ(log.false_alarms, 0);
+  EXPECT_LT(scorer.score().localizers.at("ekf").nees_mean, 3.0 * 1.8);
+}
+
+TEST(Rigs, WhatNoLocalizerCanUseIsRefused) {
+  const std::string ceiling = std::string(VIGIA_SOURCE_DIR) + "/config/missions/ceiling-hall.yaml";
+  EXPECT_THROW(
+      load_mission(ceiling, {"robot={name: other, cameras: [{mount: fixed, mount_m: [0, 0, 0.5], "
+                             "rpy_deg: [0, -90, 0]}, {id: 2, mount: fixed, mount_m: [0.3, 0, 0.5], "
+                             "rpy_deg: [0, -90, 0]}]}"}),
+      InputError);
+}
+
 TEST(Rigs, AnOmnidirectionalCameraIsRefusedWhereNoEyeReadsIt) {
   try {
     room("cameras: [{id: 5, mount: fixed, optics: omni, focal_px: 130}]");

@@ -65,7 +65,8 @@ bool looks_up(const Camera& camera);
 const Camera* directed_camera(const Rig& rig);
 
 /// A pair of level pinhole cameras on the base that look ahead, alike and at one height, to the
-/// left and the right of the base's x axis by half the baseline, the left one first.
+/// left and the right of the base's x axis by half the baseline, the left one first; they expose
+/// and deliver together.
 struct StereoCameras {
   CameraId left = 0;
   CameraId right = 1;

@@ -62,6 +62,7 @@ class DriveBound {
     PosteriorBound looks;
     std::optional<localization::CeilingFilter> ceiling;
     std::optional<localization::CornerFilter> corners;
+    bool by_landmarks = false;  ///< their images have been learned from
 
     void move(const Move& move, const OdometryNoise& odometry);
     void move_looks_and_corners(const Move& move, const OdometryNoise& odometry);

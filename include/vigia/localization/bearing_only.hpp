@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "vigia/core/odometry.hpp"
+#include "vigia/localization/image_span.hpp"
 #include "vigia/localization/localizer.hpp"
 #include "vigia/localization/mean_speed.hpp"
 #include "vigia/localization/measurement_model.hpp"
@@ -65,7 +66,7 @@ class BearingOnlyLocalizer final : public Localizer {
  private:
   /// A direction in the robot's present frame, carried there by odometry.
   struct Sightline {
-    LookId look = 0;
+    ImageSpan span;
     std::optional<LandmarkId> landmark;  ///< where the landmark says who it is
     Eigen::Vector2d eye_r;
     double height_m = 0.0;           ///< of the eye above the ground
@@ -99,7 +100,7 @@ class BearingOnlyLocalizer final : public Localizer {
   Residual residual(const Sightline& seen, const Landmark& landmark) const;
   LookState look_state(const Shot& shot) const;
   void begin_look(LookId look);
-  void monitor(const UpdateResult& result, LookId look);
+  void monitor(const UpdateResult& result, const ImageSpan& span);
   void remember(const Sightline& seen);
   void search();
   std::vector<Pose2> seeds() const;
@@ -121,7 +122,7 @@ class BearingOnlyLocalizer final : public Localizer {
   std::deque<OdometryIncrement> history_;
   bool lost_ = true;
   int rejections_ = 0;
-  std::set<LookId> rejected_looks_;
+  std::set<ImageSpan> rejected_spans_;
   std::deque<Sightline> remembered_;
   Belief belief_;
 };

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "vigia/core/floor_plan.hpp"
+#include "vigia/localization/image_span.hpp"
 #include "vigia/localization/localizer.hpp"
 #include "vigia/localization/look_input.hpp"
 #include "vigia/localization/mean_speed.hpp"
@@ -94,6 +95,7 @@ class EkfLocalizer final : public Localizer {
     LookState start;
     std::size_t events = 0;  ///< 0: no look is under way
     int images = 0;
+    bool fixed_camera = false;  ///< some of them are of a camera that no look directs
     Stamp last_image;
     std::vector<Vector6> trajectory;  ///< the smoothed mean before each event, as of last_image
   };
@@ -117,7 +119,9 @@ class EkfLocalizer final : public Localizer {
   void extrapolate(Stamp stamp);
   std::vector<LookInput> drop_extrapolated();
   void forget_old();
-  void monitor_innovations(const UpdateResult& result, LookId look, bool first_of_look);
+  /// Whether it is of the head, and no image of its look has been fused.
+  bool begins_look(const Shot& shot) const;
+  void monitor_innovations(const UpdateResult& result, const ImageSpan& span, bool first_of_look);
   /// Σ NIS of the first images of the last looks and its degrees of freedom.
   std::pair<double, int> innovations_of_looks() const;
   void refresh_belief();
@@ -134,7 +138,7 @@ class EkfLocalizer final : public Localizer {
 
   std::array<int, kUpdateStatuses> counts_{};
   int rejections_ = 0;
-  std::set<LookId> rejected_looks_;
+  std::set<ImageSpan> rejected_spans_;
   std::deque<UpdateResult> first_of_looks_;  ///< the first fused image of each of the last looks
   double innovation_evidence_ = 0.0;         ///< that it is lost, by those
   bool has_prior_ = false;
