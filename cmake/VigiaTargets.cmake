@@ -5,8 +5,8 @@
 # program test_MODULE; the label slow keeps its tests out of an ordinary run. CTest runs each test as a
 # process of its own, those of the greatest COST first. With VIGIA_TEST_SHARDS it runs the program in
 # that many shards instead, whose tests share a process. The tests that FILTER (GoogleTest's patterns)
-# names repeat for the sake of their figures
-# what others do once; sharded, they are an entry of their own with the label statistics.
+# names repeat for the sake of their figures what others do once; sharded, they are an entry of their own
+# with the label statistics.
 
 add_library(vigia_options INTERFACE)
 target_compile_features(vigia_options INTERFACE cxx_std_17)

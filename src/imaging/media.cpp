@@ -20,11 +20,13 @@ const Media& load_media() {
   std::error_code unknown;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", unknown);
   const auto beside = program.parent_path().parent_path() / VIGIA_MODULE_DIR / VIGIA_MEDIA_MODULE;
-  void* module = dlopen(beside.c_str(), kLoading);
-  if (module == nullptr) module = dlopen(VIGIA_MEDIA_MODULE, kLoading);
+  const bool is_beside = std::filesystem::exists(beside, unknown);
+  void* const module = dlopen(is_beside ? beside.c_str() : VIGIA_MEDIA_MODULE, kLoading);
   void* const entry = module != nullptr ? dlsym(module, "vigia_media") : nullptr;
   if (entry == nullptr)
-    throw std::runtime_error(std::string("vigia's module for pictures cannot be loaded: ") +
+    throw std::runtime_error(std::string("the module for pictures, " VIGIA_MEDIA_MODULE
+                                         ", cannot be loaded; it belongs into ../" VIGIA_MODULE_DIR
+                                         "/ of the program's folder, or on its run path: ") +
                              dlerror());
   return *reinterpret_cast<decltype(&vigia_media)>(entry)();
 }

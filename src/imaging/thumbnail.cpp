@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 namespace vigia::imaging {
@@ -42,8 +43,8 @@ std::string encode_jpeg(const vpImage<vpRGBa>& image, int quality) {
                      CV_8UC4, image.bitmap);
   cv::Mat bgr;
   cv::cvtColor(rgba, bgr, cv::COLOR_RGBA2BGR);
-  constexpr int kJpegQuality = 1;  // cv::IMWRITE_JPEG_QUALITY
-  const std::vector<unsigned char> bytes = media().encode(".jpg", bgr, {kJpegQuality, quality});
+  const std::vector<unsigned char> bytes =
+      media().encode(".jpg", bgr, {cv::IMWRITE_JPEG_QUALITY, quality});
   return {bytes.begin(), bytes.end()};
 }
 

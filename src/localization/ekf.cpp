@@ -154,8 +154,8 @@ void EkfLocalizer::fuse(const Shot& shot, Event& event) const {
   event.after = smoothed->filtered.back();
   window.trajectory = std::move(smoothed->trajectory);
   // A fixed camera looks for ever: of its images none is left out, the older ones stay as they are.
-  if (window.events > kLookEvents ||
-      (window.fixed_camera && window.images >= params_.look_images)) {
+  const bool full = window.fixed_camera && window.images >= params_.look_images;
+  if (window.events > kLookEvents || (full && window.events > 1)) {
     const auto half = static_cast<std::ptrdiff_t>(window.events / 2);
     window.start = smoothed->filtered[static_cast<std::size_t>(half) - 1];
     window.trajectory.erase(window.trajectory.begin(), window.trajectory.begin() + half);

@@ -32,7 +32,8 @@ void describe_loss(ParamVisitor& v, Params& p) {
            "lost while √λ_max of the position covariance is above this");
   v.integer("lost_rejections", p.lost_rejections, {1, 100000},
             "lost after so many unexplained images in a row, …");
-  v.integer("lost_looks", p.lost_looks, {1, 1000}, "… in at least so many looks");
+  v.integer("lost_looks", p.lost_looks, {1, 1000},
+            "… in at least so many looks, or seconds of a fixed camera");
 }
 
 }  // namespace
@@ -50,7 +51,8 @@ void describe(ParamVisitor& v, EkfParams& p) {
             "still tells discs apart)");
   v.integer("iterations", p.iterations, {1, 20}, "of the joint linearisation of a look, at most");
   v.integer("look_images", p.look_images, {1, 10000},
-            "images of a look that are linearised anew at each update, at most");
+            "images of a look that are linearised anew at each update, at most; of more only every "
+            "second, fourth … is used, but for those of a fixed camera, which are used for good");
   v.number("converged", p.converged, {1e-12, 1.0},
            About("the linearisation ends with a step of less").in("m, rad"));
   describe_loss(v, p);

@@ -59,6 +59,10 @@ bool has_patterns(const MissionSetup& setup) {
   });
 }
 
+constexpr const char* kNeedsPair =
+    "a field with goals in the world, and a level stereo pair: two cameras, the left one first, "
+    "alike in place, lens and timing";
+
 LocalizerPtr make_ekf(const MissionSetup& setup, std::uint64_t /*seed*/) {
   return std::make_unique<localization::EkfLocalizer>(setup.world.landmarks, setup.on_ground(),
                                                       setup.ekf, setup.world.plan);
@@ -180,9 +184,7 @@ const std::vector<LocalizerEntry>& localizers() {
       {{"running_fix",
         "a goal's corner ranged from two points of the way: two circles, the heading by odometry "
         "(Bais)",
-        "a field with goals in the world, and a level stereo pair: two cameras, the left one "
-        "first, alike "
-        "in place, lens and timing"},
+        kNeedsPair},
        true,
        FirstPose::prior,
        &has_corners,
@@ -190,9 +192,7 @@ const std::vector<LocalizerEntry>& localizers() {
       {{"ml_fix",
         "range and bearing of goals' corners by maximum likelihood, the errors of the pair's "
         "calibration as states (after Bais)",
-        "a field with goals in the world, and a level stereo pair: two cameras, the left one "
-        "first, alike "
-        "in place, lens and timing"},
+        kNeedsPair},
        true,
        FirstPose::itself,
        &has_corners,

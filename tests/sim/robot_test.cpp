@@ -1,5 +1,7 @@
 #include "vigia/sim/robot.hpp"
 
+#include "sim/exact_robot.hpp"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -7,12 +9,7 @@
 namespace vigia::sim {
 namespace {
 
-RobotParams exact_robot() {
-  RobotParams params;
-  params.odometry = {0.0, 0.0, 0.0};
-  params.sensor = {0.0, 0.0, 0.0};
-  return params;
-}
+using testing::exact_robot;
 
 constexpr Duration kTick{40'000'000};
 

@@ -1,5 +1,7 @@
 #include "vigia/sim/visp_robot.hpp"
 
+#include "sim/exact_robot.hpp"
+
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -8,15 +10,10 @@
 namespace vigia::sim {
 namespace {
 
-RobotParams exact_axes() {
-  RobotParams params;
-  params.odometry = {0.0, 0.0, 0.0};
-  params.sensor = {0.0, 0.0, 0.0};
-  return params;
-}
+using testing::exact_robot;
 
 TEST(VispRobot, ItsJacobianIsTheDerivativeOfTheTrueCameraPose) {
-  RobotParams params = exact_axes();
+  RobotParams params = exact_robot();
   params.head.mount_r = {0.15, 0.02, 1.2};
   params.head.mount_yaw = 0.2;
   params.head.camera_offset_h = {0.05, 0.01, 0.03};
@@ -62,7 +59,7 @@ TEST(VispRobot, ItsJacobianIsTheDerivativeOfTheTrueCameraPose) {
 }
 
 TEST(VispRobot, MovesThroughThePointerThatVispPrograms) {
-  VispRobot robot(exact_axes(), {}, 8.0, 1);
+  VispRobot robot(exact_robot(), {}, 8.0, 1);
   vpRobot& visp = robot;
   visp.setRobotState(vpRobot::STATE_VELOCITY_CONTROL);
   vpColVector rates(4, 0.0);
@@ -83,7 +80,7 @@ TEST(VispRobot, MovesThroughThePointerThatVispPrograms) {
 }
 
 TEST(VispRobot, ACameraTwistWithinReachIsReached) {
-  VispRobot robot(exact_axes(), {}, 8.0, 1);
+  VispRobot robot(exact_robot(), {}, 8.0, 1);
   robot.setRobotState(vpRobot::STATE_VELOCITY_CONTROL);
   vpMatrix eJe;
   robot.get_eJe(eJe);
@@ -97,7 +94,7 @@ TEST(VispRobot, ACameraTwistWithinReachIsReached) {
 }
 
 TEST(VispRobot, RefusesAVelocityInTheWrongStateOrOfTheWrongLength) {
-  VispRobot robot(exact_axes(), {}, 8.0, 1);
+  VispRobot robot(exact_robot(), {}, 8.0, 1);
   EXPECT_THROW(robot.setVelocity(vpRobot::ARTICULAR_FRAME, vpColVector(4, 0.0)), vpRobotException);
   robot.setRobotState(vpRobot::STATE_VELOCITY_CONTROL);
   EXPECT_THROW(robot.setVelocity(vpRobot::ARTICULAR_FRAME, vpColVector(3, 0.0)), vpRobotException);
@@ -105,7 +102,7 @@ TEST(VispRobot, RefusesAVelocityInTheWrongStateOrOfTheWrongLength) {
 }
 
 TEST(VispRobot, HasFiveAxesWhenItIsOmnidirectional) {
-  RobotParams params = exact_axes();
+  RobotParams params = exact_robot();
   params.base.side_speed = 0.25;
   params.base.side_acceleration = 0.4;
   VispRobot robot(params, {0.5, 0.2, 0.4}, 8.0, 1);

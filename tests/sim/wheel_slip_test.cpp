@@ -1,5 +1,6 @@
 #include "vigia/sim/wheel_slip.hpp"
 
+#include "sim/exact_robot.hpp"
 #include "sim/room.hpp"
 
 #include <cmath>
@@ -114,20 +115,15 @@ TEST(WheelSlip, ScaleErrorsStayAndHaveTheStatedSpread) {
               kSlipSigmas * std::sqrt(2.0 / (2.0 * kSeeds)));
 }
 
-RobotParams quiet_robot() {
-  RobotParams params;
-  params.odometry = {0.0, 0.0, 0.0};
-  params.sensor = {0.0, 0.0, 0.0};
-  return params;
-}
+using testing::exact_robot;
 
 TEST(Robot, ReportsWhatItsWheelsDoNotWhatTheBaseDoes) {
   WheelSlipParams params;
   params.per_m = 0.0;
   params.diameter = 0.05;
   params.base = 0.0;
-  Robot slipping(quiet_robot(), {}, 8.0, 1);
-  Robot firm(quiet_robot(), {}, 8.0, 1);
+  Robot slipping(exact_robot(), {}, 8.0, 1);
+  Robot firm(exact_robot(), {}, 8.0, 1);
   slipping.set_wheel_slip(WheelSlip(params, 4));
   for (Robot* robot : {&slipping, &firm}) {
     robot->command({0.2, 0.1}, {});
@@ -138,7 +134,7 @@ TEST(Robot, ReportsWhatItsWheelsDoNotWhatTheBaseDoes) {
 }
 
 TEST(Robot, EncodersWithBacklashLagBehindByHalfTheirPlay) {
-  Robot robot(quiet_robot(), {}, 8.0, 1);
+  Robot robot(exact_robot(), {}, 8.0, 1);
   robot.set_backlash(0.002);
   const auto run = [&](double rate, double seconds) {
     robot.command({}, {{rate, rate}, 0.0});

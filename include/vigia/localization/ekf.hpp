@@ -46,7 +46,7 @@ struct EkfParams {
   double lost_sigma_m = 0.6;
   /// Lost until the next reset after so many unexplained frames in a row …
   int lost_rejections = 10;
-  /// … in at least so many looks,
+  /// … in at least so many looks (of a fixed camera: seconds, see ImageSpan),
   int lost_looks = 2;
   /// or when the NIS of the first frames of the last nis_looks looks add up to more than chance
   /// allows with probability nis_probability.
