@@ -257,6 +257,20 @@ report::Curve path_of(const std::string& name, const std::vector<CeilingEstimate
   return curve;
 }
 
+/// Distance from the truth (cm) over the distance travelled (m).
+report::Curve error_of(const std::string& name, const std::vector<CeilingEstimate>& estimates) {
+  report::Curve curve{name, {}};
+  double travelled_m = 0.0;
+  Eigen::Vector2d before = estimates.front().truth.position();
+  for (const CeilingEstimate& one : estimates) {
+    travelled_m += (one.truth.position() - before).norm();
+    before = one.truth.position();
+    const double error_m = (one.estimate.position() - before).norm();
+    curve.points.emplace_back(travelled_m, kCmPerMetre * error_m);
+  }
+  return curve;
+}
+
 report::Curve heading_of(const std::string& name, const std::vector<CeilingEstimate>& estimates,
                          bool truth) {
   report::Curve curve{name, {}};
@@ -300,6 +314,13 @@ std::vector<std::vector<CeilingFrame>> study_flow(const ChonbukRun& run,
                     path_of("whole pixels, frame to frame", as_published, false),
                     path_of("sub-pixel, key frames", by_keys, false)};
     report::write_curve_chart(run.options.out / "flow-line.png", chart);
+    report::CurveChart errors;
+    errors.title = "How far it is from the truth";
+    errors.x_label = "distance travelled (m)";
+    errors.y_label = "error (cm)";
+    errors.curves = {error_of("whole pixels, frame to frame", as_published),
+                     error_of("sub-pixel, key frames", by_keys)};
+    report::write_curve_chart(run.options.out / "flow-error.png", errors);
   }
   const int lines = static_cast<int>(drives.size());
   run.add("flow alone, 5.6 m: error at the end, mean", "% of the path", {}, published, best, {},
