@@ -150,7 +150,6 @@ void SceneContent::lay_out(const FieldMap& map, const FloorPlan& plan, const App
     solids.insert(solids.end(), group.begin(), group.end());
 }
 
-/// The ceiling follows the floor among the surfaces of a building.
 void SceneContent::hang(const CeilingGrid& grid, const FloorPlan& plan, const Appearance& look) {
   CeilingTruth truth;
   truth.grid = grid;
@@ -162,9 +161,14 @@ void SceneContent::hang(const CeilingGrid& grid, const FloorPlan& plan, const Ap
   truth.lamp_grey = look.lamp_grey;
   truth.pipe_pitch_m = look.pipe_pitch_m;
   truth.pipe_drop_m = look.pipe_drop_m;
+  hang(truth, plan);
+}
+
+/// The ceiling follows the floor among the surfaces of a building.
+void SceneContent::hang(const CeilingTruth& truth, const FloorPlan& plan) {
   ceiling = {truth, plan.ceiling_m(), plan.faces().size() + 1};
   surfaces[ceiling->surface].material.tiles_per_m =
-      static_cast<float>(tiles_a_pitch(grid.pitch_m) / grid.pitch_m);
+      static_cast<float>(tiles_a_pitch(truth.grid.pitch_m) / truth.grid.pitch_m);
 }
 
 /// Gives everything the lamp's colour.

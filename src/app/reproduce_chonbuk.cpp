@@ -13,7 +13,7 @@
 #include "vigia/evaluation/ceiling_study.hpp"
 #include "vigia/evaluation/metrics.hpp"
 #include "vigia/imaging/image_frame.hpp"
-#include "vigia/perception/ceiling_follower.hpp"
+#include "vigia/perception/ceiling_calibration.hpp"
 #include "vigia/report/curve_chart.hpp"
 
 namespace vigia::app {
@@ -407,15 +407,17 @@ CalibrationTrial try_calibration(std::uint64_t seed) {
   view.grid = setting.ceiling.grid;
   view.tilt_sigma = kTiltSigma;
   view.height_sigma = kHeightSigma;
-  perception::CeilingFollower follower(view);
+  perception::CeilingCalibration calibration(view);
   Pose2 pose{random.uniform(-50.0, 50.0), random.uniform(-50.0, 50.0), random.uniform(-kPi, kPi)};
   for (int i = 0; i < kPictures; ++i) {
-    follower.next(imaging::grey_image(*hall.expose(pose, i)), Stamp::from_seconds(kPeriod_s * i));
+    calibration.next(imaging::grey_image(*hall.expose(pose, i)),
+                     Stamp::from_seconds(kPeriod_s * i));
     pose = compose(pose, {0.05, 0.0, 0.02});
   }
   const Eigen::Vector3d unit(to_deg(1.0), to_deg(1.0), kCmPerMetre * view.rise_m);
-  const Eigen::Vector3d found = follower.camera_errors().vector();
-  const Eigen::Vector3d sigma = follower.camera_errors_covariance().diagonal().cwiseSqrt();
+  const auto result = calibration.result();
+  const Eigen::Vector3d found = result.errors.vector();
+  const Eigen::Vector3d sigma = result.covariance.diagonal().cwiseSqrt();
   return {unit.cwiseProduct(found - setting.true_errors().vector()), unit.cwiseProduct(sigma)};
 }
 

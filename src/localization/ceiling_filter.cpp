@@ -50,10 +50,11 @@ CeilingFilter::CeilingFilter(const CeilingCamera& camera, const CeilingGrid& gri
   reset({}, anywhere());
 }
 
-void CeilingFilter::reset(Stamp stamp, const Prior& prior) {
+void CeilingFilter::reset(Stamp stamp, const Prior& prior, const CeilingCameraErrors& about) {
   stamp_ = stamp;
   x_ = Eigen::VectorXd::Zero(kCommon);
   x_.head<3>() = prior.pose.vector();
+  x_.segment<3>(3) = about.vector();
   P_ = Eigen::MatrixXd::Zero(kCommon, kCommon);
   P_.topLeftCorner<3, 3>() = prior.covariance;
   P_(3, 3) = P_(4, 4) = params_.tilt_sigma * params_.tilt_sigma;

@@ -66,7 +66,7 @@ class CeilingFilter {
   CeilingFilter(const CeilingCamera& camera, const CeilingGrid& grid,
                 const CeilingFilterParams& params);
 
-  void reset(Stamp stamp, const Prior& prior);
+  void reset(Stamp stamp, const Prior& prior, const CeilingCameraErrors& about = {});
   void predict(const OdometryIncrement& increment);
   /// The motion between two frames by optical flow. It says nothing where it is faster than the
   /// robot can be, nor where the robot may have gone half a pitch: the patches repeat.
