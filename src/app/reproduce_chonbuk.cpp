@@ -29,7 +29,6 @@ using evaluation::CeilingSetting;
 
 constexpr int kPositions = 100;
 constexpr int kLines = 30;
-constexpr int kFlowLines = 6;
 constexpr double kSpeed_mps = 0.1;
 constexpr double kPeriod_s = 0.04;
 constexpr double kCmPerMetre = 100.0;
@@ -355,7 +354,7 @@ void study_turn(const ChonbukRun& run) {
 /// The ceiling's distance is known and right; pipes hang 10 cm below it.
 void study_pipes(const ChonbukRun& run) {
   constexpr double kPipePitch_m = 1.5;
-  auto drives = drives_of(&ideal, run.lines(kFlowLines), kSpeed_mps * kPeriod_s);
+  auto drives = drives_of(&ideal, run.lines(kLines), kSpeed_mps * kPeriod_s);
   for (CeilingDrive& drive : drives) drive.setting.ceiling.pipe_pitch_m = kPipePitch_m;
   const auto frames = evaluation::read_ceiling_drives(drives, {false, true}, run.options.threads);
   double mean = 0.0;
@@ -646,7 +645,7 @@ evaluation::PaperTable reproduce_chonbuk(const PaperOptions& options) {
                  {"speed_mps", kSpeed_mps},
                  {"period_s", kPeriod_s}};
   study_positions(run);
-  const auto drives = drives_of(&ideal, run.lines(kFlowLines), kSpeed_mps * kPeriod_s);
+  const auto drives = drives_of(&ideal, run.lines(kLines), kSpeed_mps * kPeriod_s);
   study_mountings(run, from_deg(0.2), 0.005);
   study_mountings(run, from_deg(0.7), 0.02);
   const auto frames = study_flow(run, drives);
