@@ -26,6 +26,7 @@ struct DarkChord {
 
 /// The connected dark region about a chord.
 struct DarkSpot {
+  std::vector<std::array<int, 2>> pixels;
   double area = 0.0;
   double darkest = 0.0;  ///< mean level of its darker half
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
@@ -138,23 +139,20 @@ DarkSpot fill(const PatchWindow& window, const DarkChord& chord, const Window& f
   const double level = 0.5 * (chord.patch + chord.ground);
   const Window& w = window.window;
   std::vector<char> taken(window.grey.size(), 0);
-  std::vector<std::array<int, 2>> open;
   const auto take = [&](int u, int v) {
     const int at = (v - w.v) * w.width + (u - w.u);
     const auto index = static_cast<std::size_t>(at);
     if (taken[index] != 0 || window.grey[index] >= level) return;
     taken[index] = 1;
-    open.push_back({u, v});
+    spot.pixels.push_back({u, v});
   };
   if (seed[0] >= 0) take(seed[0], seed[1]);
   std::vector<unsigned char> levels;
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
-  while (!open.empty()) {
-    const auto [u, v] = open.back();
-    open.pop_back();
+  for (std::size_t i = 0; i < spot.pixels.size(); ++i) {
+    const auto [u, v] = spot.pixels[i];
     const Eigen::Vector2d p(u, v);
-    spot.area += 1.0;
     levels.push_back(window.at(u, v));
     sum += p;
     squares += p * p.transpose();
@@ -168,6 +166,7 @@ DarkSpot fill(const PatchWindow& window, const DarkChord& chord, const Window& f
     if (v > w.v) take(u, v - 1);
     if (v < w.bottom() - 1) take(u, v + 1);
   }
+  spot.area = static_cast<double>(spot.pixels.size());
   if (spot.area < 1.0) return spot;
   spot.darkest = dark_level(levels);
   spot.mean = sum / spot.area;
@@ -188,17 +187,28 @@ double filled_share(const PatchFinderParams& params) {
   return params.polarity ? 1.0 - kTongueLength * (1.0 - kTongueWidth) : 1.0;
 }
 
+/// Of the pixels along @p axis; positive where they thin out forward, as at a tongue.
+double skewness(const DarkSpot& spot, const Eigen::Vector2d& axis) {
+  double sum = 0.0;
+  for (const auto& [u, v] : spot.pixels) {
+    const double along = axis.dot(Eigen::Vector2d(u, v) - spot.mean);
+    sum += along * along * along;
+  }
+  return sum;
+}
+
 /// Where a fit may begin: long enough to have a direction.
 std::optional<PatchShape> start_of(const DarkSpot& spot, const DarkChord& chord,
                                    const PatchFinderParams& params, const Window& frame) {
   const double whole = params.length_px * params.width_px * filled_share(params);
   if (spot.open || spot.area > 1.4 * whole) return std::nullopt;
-  if (spot.area < (spot.at_border ? 0.35 : 0.65) * whole) return std::nullopt;
+  if (spot.area < (spot.at_border ? 0.35 : 0.4) * whole) return std::nullopt;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spot.covariance);
   const double ratio = std::sqrt(axes.eigenvalues()[1] / std::max(axes.eigenvalues()[0], 0.1));
   if (ratio < (spot.at_border ? 1.3 : 1.8)) return std::nullopt;
   PatchShape shape;
-  const Eigen::Vector2d along = axes.eigenvectors().col(1);
+  Eigen::Vector2d along = axes.eigenvectors().col(1);
+  if (skewness(spot, along) < 0.0) along = -along;
   shape.uv = spot.mean;
   shape.angle = std::atan2(along.y(), along.x());
   shape.patch = chord.patch;
@@ -215,6 +225,11 @@ std::optional<PatchShape> start_of(const DarkSpot& spot, const DarkChord& chord,
   return shape;
 }
 
+constexpr double kMaxLogOdds = 1e3;
+constexpr double kOneSidedLogOdds = 30.0;  // the other direction does not come to rest
+constexpr double kMaxTrace_px2 = 0.1;      // of a whole patch's position
+constexpr double kMaxCutTrace_px2 = 4.0;
+
 /// The better of the two directions, and by how much.
 struct DirectedFit {
   PatchFit fit;
@@ -222,15 +237,18 @@ struct DirectedFit {
 };
 std::optional<DirectedFit> fit_directed(const PatchWindow& window, PatchShape start,
                                         const PatchFinderParams& params) {
-  const auto one = fit_patch(window, start, params);
+  constexpr double kNever = 1e30;
+  const auto one = fit_patch(window, start, params, kNever);
   if (!params.polarity) return one ? std::optional<DirectedFit>({*one, 0.0}) : std::nullopt;
   start.angle = wrap_angle(start.angle + kPi);
-  const auto other = fit_patch(window, start, params);
+  // So much worse after two steps is no direction.
+  const double give_up = one ? one->square + 2.0 * kMaxLogOdds * one->noise * one->noise : kNever;
+  const auto other = fit_patch(window, start, params, give_up);
   if (!one && !other) return std::nullopt;
-  if (!one || !other) return DirectedFit{one ? *one : *other, 30.0};
+  if (!one || !other) return DirectedFit{one ? *one : *other, kOneSidedLogOdds};
   const PatchFit& best = one->square <= other->square ? *one : *other;
   const double less = std::abs(one->square - other->square);
-  return DirectedFit{best, std::min(0.5 * less / (best.noise * best.noise), 1e3)};
+  return DirectedFit{best, std::min(0.5 * less / (best.noise * best.noise), kMaxLogOdds)};
 }
 
 /// A dark spot of a textured ceiling passes for a patch out of focus, with residuals that go
@@ -240,13 +258,13 @@ double max_misfit(const PatchFit& fit, const PatchFinderParams& params) {
   return params.max_misfit * contrast * std::min(1.0, params.blur_px / fit.shape.blur);
 }
 
-bool is_patch(const PatchFit& fit, const PatchFinderParams& params) {
+bool is_patch(const PatchFit& fit, const PatchFinderParams& params, bool whole) {
   const double contrast = fit.shape.ground - fit.shape.patch;
   return contrast >= params.min_contrast &&
          std::abs(fit.shape.log_scale) <= params.max_scale_error &&
          fit.noise <= std::max(params.max_misfit * contrast, params.max_noise) &&
          fit.misfit <= max_misfit(fit, params) && fit.covariance.allFinite() &&
-         fit.covariance.topLeftCorner<2, 2>().trace() < 4.0;
+         fit.covariance.topLeftCorner<2, 2>().trace() < (whole ? kMaxTrace_px2 : kMaxCutTrace_px2);
 }
 
 /// Whether the patch reaches beyond what the camera shows.
@@ -304,14 +322,15 @@ PatchScan PatchFinder::find(const imaging::Frame& frame) const {
     spots.emplace_back(spot.mean.x(), spot.mean.y(), 0.6 * params_.length_px);
     const auto start = start_of(spot, chord, params_, frame.full());
     const auto directed = start ? fit_directed(window, *start, params_) : std::nullopt;
-    if (!directed || !is_patch(directed->fit, params_)) {
+    const bool whole = directed && !is_cut(directed->fit.shape, params_, frame.full());
+    const auto fit = directed ? refine_patch(window, params_, whole, directed->fit) : std::nullopt;
+    if (!fit || !is_patch(*fit, params_, whole)) {
       ++scan.rejected;
       continue;
     }
-    const PatchFit& fit = directed->fit;
-    scan.patches.push_back({fit.shape.uv, fit.shape.angle, fit.covariance,
-                            directed->forward_log_odds, is_cut(fit.shape, params_, frame.full())});
-    square += fit.noise * fit.noise;
+    scan.patches.push_back(
+        {fit->shape.uv, fit->shape.angle, fit->covariance, directed->forward_log_odds, !whole});
+    square += fit->noise * fit->noise;
   }
   if (!scan.patches.empty())
     scan.noise = std::sqrt(square / static_cast<double>(scan.patches.size()));

@@ -1,6 +1,6 @@
 #include "patch_fit.hpp"
 
-#include "normal_table.hpp"
+#include "patch_outline.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,82 +12,11 @@
 namespace vigia::tracking {
 namespace {
 
-constexpr int kFitUnknowns = 7;  // u, v, angle, log scale, patch, ground, blur
 using FitNormal = Eigen::Matrix<double, kFitUnknowns, kFitUnknowns>;
 using FitVector = Eigen::Matrix<double, kFitUnknowns, 1>;
 
 constexpr int kFitSteps = 12;
-constexpr double kCorrelationSigmas = 1.5;   // of neighbours by chance
-constexpr std::size_t kCorrelationLags = 8;  // px
-constexpr double kFitBand_px = 3.5;          // beside the patch that is fitted with it
-constexpr double kBlurSigma_px = 0.3;
-
-/// The patch's share of a pixel and its derivatives by the pixel's place in the patch's frame (x
-/// forward), by the blur, and by the log of the size.
-struct Share {
-  float value = 0.0F;
-  float dx = 0.0F;
-  float dy = 0.0F;
-  float dblur = 0.0F;
-};
-
-/// Φ(t/s) at an edge, and what it adds to the derivatives.
-struct EdgeSide {
-  float value;
-  float density;  ///< ∂/∂t
-  float blur;     ///< ∂/∂s
-};
-
-inline EdgeSide side(float t, float per_blur) {
-  const float z = t * per_blur;
-  const NormalTable::Value normal = normal_table().at(z);
-  const float density = normal.density * per_blur;
-  return {normal.integral, density, -z * density};
-}
-
-/// Of the rectangle between low and high in x, and within ±half in y.
-inline void add_rectangle(const EdgeSide& low, const EdgeSide& high, const EdgeSide& below,
-                          const EdgeSide& above, Share& share) {
-  const float along = low.value - high.value;
-  const float across = below.value - above.value;
-  share.value += along * across;
-  share.dx += (low.density - high.density) * across;
-  share.dy += along * (below.density - above.density);
-  share.dblur += (low.blur - high.blur) * across + along * (below.blur - above.blur);
-}
-
-/// The patch's outline for one size, px.
-struct PatchOutline {
-  float half_length;
-  float neck;  ///< where the tongue begins
-  float half_width;
-  float half_tongue;
-  bool tongue;
-
-  PatchOutline(const PatchFinderParams& params, double log_scale)
-      : half_length(static_cast<float>(0.5 * params.length_px * std::exp(log_scale))),
-        neck(static_cast<float>(1.0 - 2.0 * kTongueLength) * half_length),
-        half_width(static_cast<float>(0.5 * params.width_px * std::exp(log_scale))),
-        half_tongue(static_cast<float>(kTongueWidth) * half_width),
-        tongue(params.polarity) {}
-
-  Share share(float x, float y, float per_blur) const {
-    Share share;
-    const EdgeSide back = side(x + half_length, per_blur);
-    const EdgeSide front = side(x - half_length, per_blur);
-    const EdgeSide left = side(y + half_width, per_blur);
-    const EdgeSide right = side(y - half_width, per_blur);
-    if (!tongue) {
-      add_rectangle(back, front, left, right, share);
-      return share;
-    }
-    const EdgeSide middle = side(x - neck, per_blur);
-    add_rectangle(back, middle, left, right, share);
-    add_rectangle(middle, front, side(y + half_tongue, per_blur), side(y - half_tongue, per_blur),
-                  share);
-    return share;
-  }
-};
+constexpr double kFitBand_px = 3.5;  // beside the patch that is fitted with it
 
 struct PatchSums {
   FitNormal normal = FitNormal::Zero();
@@ -110,12 +39,8 @@ imaging::Window band_of(const PatchWindow& window, const PatchShape& start,
                                    static_cast<int>(std::ceil(2.0 * down)) + 1});
 }
 
-/// The pixels about the start: they stay the same while the shape moves.
-struct BandPixel {
-  float u;
-  float v;
-  float grey;
-};
+}  // namespace
+
 std::vector<BandPixel> band_pixels(const PatchWindow& window, const PatchShape& start,
                                    const PatchFinderParams& params) {
   const imaging::Window band = band_of(window, start, params);
@@ -135,6 +60,8 @@ std::vector<BandPixel> band_pixels(const PatchWindow& window, const PatchShape& 
   }
   return pixels;
 }
+
+namespace {
 
 PatchSums sum_up(const std::vector<BandPixel>& pixels, const PatchShape& shape,
                  const PatchFinderParams& params, double noise) {
@@ -182,59 +109,21 @@ PatchSums sum_up(const std::vector<BandPixel>& pixels, const PatchShape& shape,
   return sums;
 }
 
-/// By how much more the fit's variance is than that of white noise of the same size: what the
-/// surroundings have of texture, neighbours share. The residuals' correlation along rows, as far as
-/// it is more than chance; taken for alike along columns.
-double correlation_factor(const std::vector<BandPixel>& pixels, const PatchShape& shape,
-                          const PatchFinderParams& params) {
-  const PatchOutline outline(params, shape.log_scale);
-  const auto c = static_cast<float>(std::cos(shape.angle));
-  const auto s = static_cast<float>(std::sin(shape.angle));
-  const float per_blur = 1.0F / static_cast<float>(shape.blur);
-  std::vector<float> residuals;
-  residuals.reserve(pixels.size());
-  double square = 0.0;
-  for (const BandPixel& pixel : pixels) {
-    const float du = pixel.u - static_cast<float>(shape.uv.x());
-    const float dv = pixel.v - static_cast<float>(shape.uv.y());
-    const float share = outline.share(c * du + s * dv, c * dv - s * du, per_blur).value;
-    residuals.push_back(pixel.grey - static_cast<float>(shape.ground) -
-                        static_cast<float>(shape.patch - shape.ground) * share);
-    square += static_cast<double>(residuals.back() * residuals.back());
-  }
-  square /= static_cast<double>(pixels.size());
-  double sum = 1.0;
-  for (std::size_t lag = 1; lag <= kCorrelationLags; ++lag) {
-    double products = 0.0;
-    int pairs = 0;
-    for (std::size_t i = lag; i < pixels.size(); ++i) {
-      if (pixels[i].v != pixels[i - lag].v) continue;
-      products += static_cast<double>(residuals[i] * residuals[i - lag]);
-      ++pairs;
-    }
-    if (pairs < kFitUnknowns) break;
-    const double correlation = products / (pairs * square);
-    if (correlation < kCorrelationSigmas / std::sqrt(static_cast<double>(pairs))) break;
-    sum += 2.0 * correlation;
-  }
-  return sum * sum;
-}
+}  // namespace
 
-PatchShape stepped(const PatchShape& shape, const FitVector& step) {
+PatchShape stepped(const PatchShape& shape, const Eigen::Matrix<double, kFitUnknowns, 1>& step) {
   PatchShape next = shape;
   next.uv += step.head<2>().cwiseMax(-2.0).cwiseMin(2.0);
   next.angle += std::clamp(step[2], -0.3, 0.3);
   next.log_scale += std::clamp(step[3], -0.1, 0.1);
   next.patch += step[4];
   next.ground += step[5];
-  next.blur = std::clamp(shape.blur + step[6], 0.35, 3.0);
+  next.blur = std::clamp(shape.blur + step[6], 0.35, 4.0);
   return next;
 }
 
-}  // namespace
-
 std::optional<PatchFit> fit_patch(const PatchWindow& window, const PatchShape& start,
-                                  const PatchFinderParams& params) {
+                                  const PatchFinderParams& params, double give_up) {
   PatchFit fit;
   fit.shape = start;
   fit.noise = 4.0;
@@ -248,14 +137,10 @@ std::optional<PatchFit> fit_patch(const PatchWindow& window, const PatchShape& s
     const FitVector step = solver.solve(sums.gradient);
     if (!step.allFinite()) return std::nullopt;
     fit.square = sums.square;
-    fit.noise = std::max(0.3, std::sqrt(sums.square / (sums.pixels - kFitUnknowns)));
-    fit.covariance =
-        (fit.noise * fit.noise) * solver.solve(FitNormal::Identity()).topLeftCorner<3, 3>();
+    if (i > 1 && fit.square > give_up) return fit;
+    fit.noise = std::max(kMinNoise, std::sqrt(sums.square / (sums.pixels - kFitUnknowns)));
     fit.shape = stepped(fit.shape, step);
     if (i > 3 && step.head<2>().norm() < 1e-3 && std::abs(step[2]) < 1e-4) {
-      const double factor = correlation_factor(pixels, fit.shape, params);
-      fit.covariance *= factor;
-      fit.misfit = fit.noise * std::sqrt(1.0 - 1.0 / std::sqrt(factor));
       fit.shape.angle = wrap_angle(fit.shape.angle);
       return fit;
     }

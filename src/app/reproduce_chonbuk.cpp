@@ -315,7 +315,7 @@ std::vector<std::vector<CeilingFrame>> study_flow(const ChonbukRun& run,
                     path_of("sub-pixel, key frames", by_keys, false)};
     report::write_curve_chart(run.options.out / "flow-line.png", chart);
     report::CurveChart errors;
-    errors.title = "How far it is from the truth";
+    errors.title = "Optical flow alone, the same line: distance from the truth";
     errors.x_label = "distance travelled (m)";
     errors.y_label = "error (cm)";
     errors.curves = {error_of("whole pixels, frame to frame", as_published),
