@@ -65,6 +65,7 @@ void CeilingFilter::reset(Stamp stamp, const Prior& prior, const CeilingCameraEr
   cells_unsure_ = false;
   gated_ = 0;
   unknown_s_ = 0.0;
+  flow_alone_s_ = 0.0;
   lively_Q_.setZero();
   lone_.reset();
   turned_ = 0.0;
@@ -87,8 +88,11 @@ void CeilingFilter::move(const Motion& motion) {
   P_.leftCols<3>().bottomRows(P_.rows() - 3) = rows.rightCols(P_.cols() - 3).transpose();
   const Eigen::Matrix3d pose = rows.leftCols<kCommon>() * motion.F.transpose();
   P_.topLeftCorner<3, 3>() = 0.5 * (pose + pose.transpose()) + motion.Q;
-  lively_Q_ = motion.Q.trace() > kCalming * lively_Q_.trace() ? motion.Q : kCalming * lively_Q_;
   refresh_belief();
+}
+
+void CeilingFilter::enliven(const Eigen::Matrix3d& Q) {
+  lively_Q_ = Q.trace() > kCalming * lively_Q_.trace() ? Q : kCalming * lively_Q_;
 }
 
 /// A step in the robot's frame, turned to the world's axes. What the camera's errors do to it
@@ -118,15 +122,20 @@ void CeilingFilter::predict(const OdometryIncrement& u) {
   motion.Q = G * control_covariance(u, params_.odometry) * G.transpose();
   stamp_ = u.to;
   move(motion);
+  enliven(motion.Q);
 }
 
 void CeilingFilter::predict(const ImageShift& shift, Stamp to) {
   const FlowMotion seen = seen_motion(shift);
   const double reach = params_.max_speed_mps * (to - stamp_).seconds() + kFlowSlack_m;
-  if (seen.step.position().norm() > reach || reach > 0.5 * grid_.pitch_m) {
+  const double dt = (to - stamp_).seconds();
+  const bool tells = seen.covariance.topLeftCorner<2, 2>().trace() <
+                     unknown_motion(0.0, dt).topLeftCorner<2, 2>().trace();
+  if (!tells || seen.step.position().norm() > reach || reach > 0.5 * grid_.pitch_m) {
     predict_unknown(to);
     return;
   }
+  flow_alone_s_ += dt;
   stamp_ = to;
   move(led_on(seen, Eigen::Matrix3d::Identity()));
 }
@@ -143,20 +152,25 @@ bool CeilingFilter::predict(const OdometryIncrement& u, const ImageShift& shift)
   motion.step = fused->step;
   motion.covariance = fused->covariance;
   stamp_ = u.to;
-  move(led_on(motion, fused->flow_weight));
+  const Motion fused_motion = led_on(motion, fused->flow_weight);
+  move(fused_motion);
+  enliven(fused_motion.Q);
   return true;
 }
 
-void CeilingFilter::predict_unknown(Stamp to) {
-  // The robot may have kept one direction all the time: σ grows as the time, not as its root.
-  const double before = unknown_s_;
-  unknown_s_ += (to - stamp_).seconds();
+/// Of a robot that may keep one direction all the time: σ grows as the time, not as its root.
+Eigen::Matrix3d CeilingFilter::unknown_motion(double from_s, double to_s) const {
   const double reach = params_.max_speed_mps / 3.0;
   const double turn = 2.0 * params_.max_speed_mps;  // rad/s, of a robot half a metre wide
-  const double grown = unknown_s_ * unknown_s_ - before * before;
-  Motion motion{pose(), MotionJacobian::Zero(), Eigen::Matrix3d::Zero()};
+  const double grown = to_s * to_s - from_s * from_s;
+  return Eigen::Vector3d(reach * reach, reach * reach, turn * turn).asDiagonal() * grown;
+}
+
+void CeilingFilter::predict_unknown(Stamp to) {
+  const double before = unknown_s_;
+  unknown_s_ += (to - stamp_).seconds();
+  Motion motion{pose(), MotionJacobian::Zero(), unknown_motion(before, unknown_s_)};
   motion.F.leftCols<3>().setIdentity();
-  motion.Q.diagonal() << reach * reach * grown, reach * reach * grown, turn * turn * grown;
   stamp_ = to;
   move(motion);
 }
@@ -574,14 +588,37 @@ void CeilingFilter::note_lone_patch(const std::vector<Seen>& passed) {
     lone_.reset();
 }
 
+CeilingFilter::Fit CeilingFilter::fit(const std::vector<Seen>& seen) {
+  Fit fitted;
+  fitted.start = point_of_linearisation(seen);
+  fitted.seen = associated(seen, fitted.start.pose);
+  hold(fitted.seen, fitted.start.pose, open());
+  fitted.passed = passed_gate(fitted.seen, fitted.start.pose);
+  return fitted;
+}
+
+/// The flow may have followed a shadow. Two or more patches that it contradicts, and that agree
+/// with what the robot can have done meanwhile, are believed; not where that is half a pitch.
+CeilingFilter::Fit CeilingFilter::fit_against_flow(const std::vector<Seen>& seen) {
+  const Eigen::Matrix3d before = P_.topLeftCorner<3, 3>();
+  P_.topLeftCorner<3, 3>() += unknown_motion(0.0, flow_alone_s_);
+  refresh_belief();
+  if (!open()) {
+    const Fit fitted = fit(seen);
+    if (fitted.passed.size() >= 2) return fitted;
+  }
+  P_.topLeftCorner<3, 3>() = before;
+  refresh_belief();
+  return {};
+}
+
 CeilingUpdate CeilingFilter::update(const std::vector<PatchImage>& patches) {
-  std::vector<Seen> seen = see(patches);
+  const std::vector<Seen> seen = see(patches);
   if (seen.empty()) return CeilingUpdate::none_seen;
   const int contradicts = seen.size() > 1 ? kSingle : 1;
-  const Start start = point_of_linearisation(seen);
-  seen = associated(seen, start.pose);
-  hold(seen, start.pose, open());
-  const std::vector<Seen> passed = passed_gate(seen, start.pose);
+  Fit fitted = fit(seen);
+  if (fitted.passed.empty() && flow_alone_s_ > 0.0) fitted = fit_against_flow(seen);
+  const std::vector<Seen>& passed = fitted.passed;
   if (passed.empty()) {
     gated_ += contradicts;
     if (gated_ >= kSingle * params_.max_gated) doubt();
@@ -590,12 +627,13 @@ CeilingUpdate CeilingFilter::update(const std::vector<PatchImage>& patches) {
   }
   gated_ = 0;
   note_lone_patch(passed);
-  note_turn(start);
-  const Eigen::VectorXd at = converged(passed, start.pose);
+  note_turn(fitted.start);
+  const Eigen::VectorXd at = converged(passed, fitted.start.pose);
   const Linearised all = linearise(passed, at);
-  weigh_shifts(all, seen, Pose2::from_vector(at.head<3>()));
+  weigh_shifts(all, fitted.seen, Pose2::from_vector(at.head<3>()));
   fuse(all, passed);
   unknown_s_ = 0.0;
+  flow_alone_s_ = 0.0;
   const auto best =
       std::max_element(shifts_.begin(), shifts_.end(),
                        [](const auto& a, const auto& b) { return a.second < b.second; });

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kStartSigma_m = 0.05;
 constexpr double kStartTurn = from_deg(4.0);
+constexpr double kSameDirection = from_deg(8.0);
 constexpr double kTiltFloor = from_deg(0.005);
 
 localization::CeilingCamera camera_under(const CeilingView& view) {
@@ -51,17 +52,10 @@ CeilingFollower::CeilingFollower(const CeilingView& view,
       filter_(camera_, view.grid, filter_params_of(view)),
       start_tilt_m_(view.rise_m * std::tan(view.tilt_sigma)) {}
 
-/// Where the camera is if the patch nearest to the picture's middle is that of the cell (0, 0).
-bool CeilingFollower::begin(const tracking::PatchScan& scan, Stamp stamp) {
-  const Intrinsics& camera = std::get<Intrinsics>(camera_.model);
-  const Eigen::Vector2d middle(camera.u0, camera.v0);
-  const auto off = [&](const PatchImage& patch) { return (patch.uv - middle).norm(); };
-  const auto nearest =
-      std::min_element(scan.patches.begin(), scan.patches.end(),
-                       [&](const auto& a, const auto& b) { return off(a) < off(b); });
-  if (nearest == scan.patches.end()) return false;
-  const auto patch = localization::on_ceiling(camera_, *nearest, about_);
-  if (!patch) return false;
+/// Where the camera is if a patch is that of the cell (0, 0).
+std::optional<Pose2> CeilingFollower::placed_by(const PatchImage& image) const {
+  const auto patch = localization::on_ceiling(camera_, image, about_);
+  if (!patch) return std::nullopt;
   Pose2 pose;
   pose.theta = wrap_angle(-patch->psi);
   if (!grid_.polarity && std::abs(pose.theta) > 0.5 * kPi)
@@ -69,9 +63,47 @@ bool CeilingFollower::begin(const tracking::PatchScan& scan, Stamp stamp) {
   const Eigen::Vector2d p = cell_centre(grid_, {0, 0}) - Eigen::Rotation2Dd(pose.theta) * patch->q;
   pose.x = p.x();
   pose.y = p.y();
+  return pose;
+}
+
+/// How many patches lie on the grid as seen from a pose.
+int CeilingFollower::agreeing(const std::vector<PatchImage>& patches, const Pose2& pose) const {
+  int count = 0;
+  for (const PatchImage& image : patches) {
+    const auto patch = localization::on_ceiling(camera_, image, about_);
+    if (!patch) continue;
+    const Eigen::Vector2d p = pose.position() + Eigen::Rotation2Dd(pose.theta) * patch->q;
+    const double off = (cell_centre(grid_, nearest_cell(grid_, p)) - p).norm();
+    double turn = std::abs(wrap_angle(patch->psi + pose.theta));
+    if (!grid_.polarity) turn = std::min(turn, kPi - turn);
+    const bool lies = off < 0.15 * grid_.pitch_m + 4.0 * grid_.placement_m;
+    if (lies && turn < kSameDirection + 4.0 * grid_.placement_turn) ++count;
+  }
+  return count;
+}
+
+/// By the patch with which most agree, of several the one nearest to the picture's middle: one that
+/// is none of the grid's would lay the grid through itself.
+bool CeilingFollower::begin(const tracking::PatchScan& scan, Stamp stamp) {
+  const Intrinsics& camera = std::get<Intrinsics>(camera_.model);
+  const Eigen::Vector2d middle(camera.u0, camera.v0);
+  std::optional<Pose2> best;
+  int most = 0;
+  double nearest_px = 0.0;
+  for (const PatchImage& image : scan.patches) {
+    const auto pose = placed_by(image);
+    if (!pose) continue;
+    const int agree = agreeing(scan.patches, *pose);
+    const double off_px = (image.uv - middle).norm();
+    if (best && (agree < most || (agree == most && off_px > nearest_px))) continue;
+    best = pose;
+    most = agree;
+    nearest_px = off_px;
+  }
+  if (!best) return false;
   const double sigma_m = kStartSigma_m + start_tilt_m_;
   const Eigen::Vector3d sigma(sigma_m, sigma_m, kStartTurn);
-  filter_.reset(stamp, {pose, sigma.cwiseAbs2().asDiagonal()}, about_);
+  filter_.reset(stamp, {*best, sigma.cwiseAbs2().asDiagonal()}, about_);
   return true;
 }
 

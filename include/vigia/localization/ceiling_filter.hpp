@@ -117,6 +117,15 @@ class CeilingFilter {
     Eigen::Vector2d about = Eigen::Vector2d::Zero();  ///< half way to where it then is
   };
   Start point_of_linearisation(const std::vector<Seen>& seen) const;
+  /// Patches with the cells that the start gives them, and those of them that the prediction
+  /// allows.
+  struct Fit {
+    Start start;
+    std::vector<Seen> seen;
+    std::vector<Seen> passed;
+  };
+  Fit fit(const std::vector<Seen>& seen);
+  Fit fit_against_flow(const std::vector<Seen>& seen);
   Pose2 placed_by(const Seen& reference, double turn) const;
   double log_prior(const Pose2& at) const;
   void note_turn(const Start& start);
@@ -148,6 +157,8 @@ class CeilingFilter {
   FlowMotion seen_motion(const ImageShift& shift) const;
   Motion led_on(const FlowMotion& step, const Eigen::Matrix3d& seen) const;
   void move(const Motion& motion);
+  void enliven(const Eigen::Matrix3d& Q);
+  Eigen::Matrix3d unknown_motion(double from_s, double to_s) const;
   void refresh_belief();
 
   CeilingCamera camera_;
@@ -165,9 +176,10 @@ class CeilingFilter {
   Eigen::Vector2d turned_about_ = Eigen::Vector2d::Zero();
   FlowTrust flow_trust_;
   int gated_ = 0;  ///< frames in a row, weighed
-  /// Of the motion in a tick lately, at most; world frame.
+  /// Of the motion in a tick of the odometry lately, at most; world frame.
   Eigen::Matrix3d lively_Q_ = Eigen::Matrix3d::Zero();
-  double unknown_s_ = 0.0;  ///< for how long nothing was known of the motion
+  double unknown_s_ = 0.0;     ///< for how long nothing was known of the motion
+  double flow_alone_s_ = 0.0;  ///< for how long only the flow told it, since patches last agreed
   Stamp stamp_;
   Belief belief_;
 };

@@ -25,10 +25,11 @@ struct CeilingView {
 tracking::PatchFinderParams finder_of(const CeilingView& view);
 
 /// Follows a camera by the ceiling alone: patches, and the motion of its edges between them. The
-/// grid has no identities: the cell of the first patch that is seen (of several the one nearest to
-/// the picture's middle) is (0, 0), and its direction the grid's x; of patches without polarity
-/// mark, that way round in which the camera's u points along x. Camera frame and the robot's have
-/// the same axes: x where u grows, y where v grows, z up; the world's handedness is theirs.
+/// grid has no identities: the cell of the first patch that is seen (of several the one with which
+/// most agree, and of those the nearest to the picture's middle) is (0, 0), and its direction the
+/// grid's x; of patches without polarity mark, that way round in which the camera's u points along
+/// x. Camera frame and the robot's have the same axes: x where u grows, y where v grows, z up; the
+/// world's handedness is theirs.
 class CeilingFollower {
  public:
   /// @p about: what the filter takes the camera's errors for at the start.
@@ -64,6 +65,8 @@ class CeilingFollower {
   Eigen::Matrix3d camera_errors_covariance() const;
 
  private:
+  std::optional<Pose2> placed_by(const PatchImage& image) const;
+  int agreeing(const std::vector<PatchImage>& patches, const Pose2& pose) const;
   bool begin(const tracking::PatchScan& scan, Stamp stamp);
 
   localization::CeilingCamera camera_;
