@@ -70,6 +70,8 @@ class PtzAttention : public Attention {
   CameraId camera_;
   EventLog& log_;
   RigOnGround on_ground_;
+  double pause_s_;    ///< between two images beyond a tick, in which nothing new is seen
+  double latency_s_;  ///< of the camera
   localization::LandmarkInformation information_;
   LookScheduler scheduler_;
   servo::GazeController gaze_;

@@ -65,6 +65,28 @@ TEST(Rigs, AHeadDirectsACameraThatHasNoZoom) {
   EXPECT_LT(scorer.score().localizers.at("ekf").position_rmse_m, 0.05);
 }
 
+class EventCounts : public Listener {
+ public:
+  void on_event(const Event& event) override { ++of[event.kind]; }
+  std::map<EventKind, int> of;
+};
+
+TEST(Rigs, AHeadWaitsForTheImagesOfASlowCamera) {
+  for (const std::string timing :
+       {"period_s: 0.5", "period_s: 1", "period_s: 0.5, latency_s: 0.4"}) {
+    EventCounts events;
+    evaluation::DriveScorer scorer;
+    run_mission(room("head: {mount_m: [0.1, 0, 1.2]}, cameras: [{focal_px: 900, " + timing + "}]",
+                     {"timeout_s=40"}),
+                3, {&events, &scorer});
+    EXPECT_GE(events.of[EventKind::acquired], 3) << timing;
+    EXPECT_EQ(events.of[EventKind::target_lost], 0) << timing;
+    EXPECT_EQ(events.of[EventKind::released], events.of[EventKind::acquired]) << timing;
+    EXPECT_EQ(events.of[EventKind::stop], 0) << timing;
+    EXPECT_LT(scorer.score().localizers.at("ekf").position_rmse_m, 0.05) << timing;
+  }
+}
+
 class LossLog : public Listener {
  public:
   void on_start(const MissionStart& start) override { names_ = start.setup.localizers; }
