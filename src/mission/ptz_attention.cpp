@@ -49,14 +49,14 @@ servo::GazeParams with_patience(servo::GazeParams params, double pause_s, double
 
 }  // namespace
 
-PtzAttention::PtzAttention(const MissionSetup& setup, CameraId camera, std::uint64_t seed,
+PtzAttention::PtzAttention(const MissionSetup& setup, const Camera& camera, std::uint64_t seed,
                            EventLog& log)
     : setup_(setup),
-      camera_(camera),
+      camera_(camera.id),
       log_(log),
       on_ground_(setup.on_ground()),
-      pause_s_(pause_between_images_s(on_ground_.rig.at(camera), setup.tick_s)),
-      latency_s_(on_ground_.rig.at(camera).latency_s),
+      pause_s_(pause_between_images_s(camera, setup.tick_s)),
+      latency_s_(camera.latency_s),
       information_(landmark_information(setup)),
       scheduler_(setup, information_, seed),
       gaze_(setup.robot.robot.head, setup.robot.robot.head_limits, setup.robot.zoom(),

@@ -20,7 +20,7 @@ namespace vigia::mission {
 class PtzAttention : public Attention {
  public:
   /// @p camera: which the head turns. All references outlive the attention.
-  PtzAttention(const MissionSetup& setup, CameraId camera, std::uint64_t seed, EventLog& log);
+  PtzAttention(const MissionSetup& setup, const Camera& camera, std::uint64_t seed, EventLog& log);
 
   void follow(const Path& path) override;
   std::optional<GazeRequest> request() const override;

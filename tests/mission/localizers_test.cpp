@@ -77,10 +77,42 @@ TEST(Localizers, WithoutLandmarksThoseThatNeedThemAreRefused) {
 
 TEST(Localizers, ImagesThatComeLaterThanTheyRememberAreRefused) {
   EXPECT_THAT(refusal({"disturbances.latency={latency_s: 0.9, processing_s: 0.2}"}),
-              AllOf(HasSubstr("images of camera 0 come 1.1"), HasSubstr("history_s")));
+              AllOf(HasSubstr("images of camera 0 come up to 1.12 s late"),
+                    HasSubstr("'ekf' remembers 1 s (localization.ekf.history_s)")));
   EXPECT_EQ(refusal({"disturbances.latency={latency_s: 0.9, processing_s: 0.2}",
-                     "localization.ekf.history_s=2", "localization.bearing_only.history_s=2"}),
+                     "localization.ekf.history_s=2"}),
             "");
+}
+
+TEST(Localizers, TheWaitForTheProcessorCounts) {
+  // An image every 0.4 s, processed for 0.6 s: the next one waits as long as the one before allows.
+  const std::vector<std::string> slow{
+      "robot={name: slow, cameras: [{mount: fixed, focal_px: 500, period_s: 0.4}]}",
+      "disturbances.latency={latency_s: 0.1, processing_s: 0.6}"};
+  EXPECT_THAT(refusal(slow), HasSubstr("images of camera 0 come up to 1.08 s late"));
+}
+
+TEST(Localizers, ImagesThatComeLaterThanOneRemembersConcernThoseWhomTheyAreForAlone) {
+  const std::string hall =
+      "robot={name: up, cameras: [{mount: fixed, mount_m: [0, 0, 0.5], "
+      "rpy_deg: [0, -90, 0], focal_px: 500, latency_s: LATE}]}";
+  const auto up = [&](const std::string& late) {
+    std::string robot = hall;
+    return robot.replace(robot.find("LATE"), 4, late);
+  };
+  const auto refused = [&](const std::string& late, const std::string& flow) {
+    try {
+      load("ceiling-hall",
+           {up(late), "localization.localizers=[ceiling, odometry]", "localization.flow=" + flow});
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refused("0.9", "[ceiling]"), "");
+  EXPECT_THAT(refused("1.2", "[ceiling]"), HasSubstr("'ceiling' remembers 1 s"));
+  EXPECT_THAT(refused("0.9", "[odometry]"), HasSubstr("the localizers of `flow` wait 0.5 s"));
+  EXPECT_EQ(refused("0.4", "[odometry]"), "");
 }
 
 TEST(Localizers, AllTakeTheirNoiseFromTheOneModelUnlessTheirOwnKeysOverrideIt) {
