@@ -127,15 +127,29 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+const char* remedy_without_prior(FirstPose first_pose) {
+  switch (first_pose) {
+    case FirstPose::prior:
+      return "it never finds itself, give one or leave it out of the localizers";
+    case FirstPose::recovery:
+      return "give one, leave it out of the localizers, or let it be the primary of a robot whose "
+             "head can look around";
+    case FirstPose::looks:
+      return "give one, leave it out of the localizers, or let a head direct the robot's camera";
+    case FirstPose::itself:
+      break;
+  }
+  return "give one";
+}
+
 void require_fit(ParamVisitor& v, const char* key, const MissionSetup& setup) {
   if (v.reader() == nullptr) return;
   for (const std::string& name : setup.localizers) {
     const LocalizerEntry& entry = *find_name(localizers(), name);
     v.require(entry.fits(setup), key, "'" + name + "' needs " + entry.needs);
     v.require(setup.prior || !needs_prior(entry, setup), key,
-              "'" + name +
-                  "' cannot start without a prior (start.prior: false); leave it out, or let it be "
-                  "the primary of a robot whose head can look around");
+              fmt::format("'{}' cannot start without a prior (start.prior: false): {}", name,
+                          remedy_without_prior(entry.first_pose)));
   }
 }
 
