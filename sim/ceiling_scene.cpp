@@ -17,8 +17,7 @@ CeilingScene::CeilingScene(const WorldMap& world, const Appearance& look,
                            const CeilingTruth& ceiling, std::uint64_t seed)
     : impl_(std::make_unique<Impl>(
           Impl{SceneContent(world, look, derive_seed(seed, "pixel noise"))})) {
-  // The ceiling follows the floor among the surfaces of a building.
-  impl_->content.ceiling = {ceiling, world.plan.ceiling_m(), world.plan.faces().size() + 1};
+  impl_->content.hang(ceiling, world.plan);
 }
 
 CeilingScene::~CeilingScene() = default;

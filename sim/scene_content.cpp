@@ -72,6 +72,14 @@ Eigen::Isometry3d frame_of(const Clutter& clutter) {
   return wMd * Eigen::AngleAxisd(clutter.turn, Eigen::Vector3d::UnitZ());
 }
 
+/// Tiles of texture between two patches: about 1.3 a metre, and a share of one left over that keeps
+/// the texture under a patch from being that under the next ones (the golden section's).
+double tiles_a_pitch(double pitch_m) {
+  const double tiles = 1.3 * pitch_m;
+  const double whole = std::floor(tiles);
+  return whole + (tiles - whole < 0.5 ? 0.382 : 0.618);
+}
+
 }  // namespace
 
 SceneContent::SceneContent(const WorldMap& world, const Appearance& look, std::uint64_t noise_seed)
@@ -142,7 +150,6 @@ void SceneContent::lay_out(const FieldMap& map, const FloorPlan& plan, const App
     solids.insert(solids.end(), group.begin(), group.end());
 }
 
-/// The ceiling follows the floor among the surfaces of a building.
 void SceneContent::hang(const CeilingGrid& grid, const FloorPlan& plan, const Appearance& look) {
   CeilingTruth truth;
   truth.grid = grid;
@@ -154,7 +161,14 @@ void SceneContent::hang(const CeilingGrid& grid, const FloorPlan& plan, const Ap
   truth.lamp_grey = look.lamp_grey;
   truth.pipe_pitch_m = look.pipe_pitch_m;
   truth.pipe_drop_m = look.pipe_drop_m;
+  hang(truth, plan);
+}
+
+/// The ceiling follows the floor among the surfaces of a building.
+void SceneContent::hang(const CeilingTruth& truth, const FloorPlan& plan) {
   ceiling = {truth, plan.ceiling_m(), plan.faces().size() + 1};
+  surfaces[ceiling->surface].material.tiles_per_m =
+      static_cast<float>(tiles_a_pitch(truth.grid.pitch_m) / truth.grid.pitch_m);
 }
 
 /// Gives everything the lamp's colour.

@@ -45,12 +45,15 @@ struct SceneContent {
   };
   std::optional<PatchedCeiling> ceiling;
 
+  /// Patches on the ceiling, whose texture does not repeat as they do.
+  void hang(const CeilingTruth& truth, const FloorPlan& plan);
+
  private:
+  void hang(const CeilingGrid& grid, const FloorPlan& plan, const Appearance& look);
   void lay_out(const FieldMap& map, const FloorPlan& plan, const Appearance& look);
   void paint(const Stripe& stripe, double ceiling_m);
   void paint(const Clutter& clutter);
   void hang(const Landmark& landmark, const Appearance& look);
-  void hang(const CeilingGrid& grid, const FloorPlan& plan, const Appearance& look);
   void shine(const std::array<float, 3>& gains);
 };
 

@@ -111,13 +111,12 @@ inline float profile_at(const ProfileTable& table, float s) {
 
 struct ShadeConstants {
   Linear depth, s, t;
-  float base, coarse, fine, offset_s, offset_t, fine_range, steady_t;
+  float base, coarse, fine, fixed_per_m, offset_s, offset_t, fine_range, steady_t;
   ProfileTable along_s, along_t;
 };
 
 VIGIA_PIXEL_BODY float shade_ray(const ShadeConstants& c, const std::uint32_t* tile, float x,
                                  float y, float z) {
-  constexpr float kFine = NoiseTile::kSize * 256.0F;  // one tile a metre; coarse: one in 8 m
   constexpr float kFar = 3e4F;
   const float inverse_depth = c.depth.a * x + c.depth.b * y + c.depth.c * z;
   const float depth = 1.0F / inverse_depth;
@@ -129,8 +128,8 @@ VIGIA_PIXEL_BODY float shade_ray(const ShadeConstants& c, const std::uint32_t* t
   t = t < kFar ? t : kFar;
   float near = inverse_depth * c.fine_range;
   near = near < 1.0F ? near : 1.0F;
-  const auto fs = static_cast<std::int32_t>((s + c.offset_s) * kFine);
-  const auto ft = static_cast<std::int32_t>((t + c.offset_t) * kFine);
+  const auto fs = static_cast<std::int32_t>((s + c.offset_s) * c.fixed_per_m);
+  const auto ft = static_cast<std::int32_t>((t + c.offset_t) * c.fixed_per_m);
   const float coarse = tile_at(tile, fs >> 3, ft >> 3);
   const float fine = tile_at(tile, fs, ft);
   const float paint_s = profile_at(c.along_s, s);
@@ -386,6 +385,7 @@ void shade(const SurfaceView& view, const std::uint32_t* tile, const Rays& rays,
                                  m.base,
                                  m.coarse,
                                  m.fine,
+                                 m.tiles_per_m * NoiseTile::kSize * 256.0F,
                                  m.offset_s,
                                  m.offset_t,
                                  view.fine_range,

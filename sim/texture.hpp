@@ -31,10 +31,11 @@ struct Profile {
 
 /// The look of one surface.
 struct Material {
-  float base = 128.0F;    ///< grey
-  float coarse = 0.0F;    ///< amplitude of the noise of metres, grey
-  float fine = 0.0F;      ///< amplitude of the noise of centimetres, grey; fades with distance
-  float offset_s = 0.0F;  ///< where in the tile the surface begins, m
+  float base = 128.0F;       ///< grey
+  float coarse = 0.0F;       ///< amplitude of the noise of metres, grey
+  float fine = 0.0F;         ///< amplitude of the noise of centimetres, grey; fades with distance
+  float tiles_per_m = 1.0F;  ///< of the noise of centimetres; a tile of the coarse one has 8
+  float offset_s = 0.0F;     ///< where in the tile the surface begins, m
   float offset_t = 0.0F;
   Profile along_s;
   Profile along_t;

@@ -14,6 +14,7 @@
 #include "vigia/core/output_folder.hpp"
 #include "vigia/imaging/image_frame.hpp"
 #include "vigia/imaging/picture_source.hpp"
+#include "vigia/perception/ceiling_calibration.hpp"
 
 namespace vigia::app {
 namespace {
@@ -35,7 +36,8 @@ struct CeilingDriveCount {
 };
 
 CeilingDriveCount follow_pictures(const CeilingCalibrationOptions& options,
-                                  const Intrinsics& camera, perception::CeilingFollower& follower) {
+                                  const Intrinsics& camera,
+                                  perception::CeilingCalibration& calibration) {
   CeilingDriveCount count;
   for (const std::string& input : options.inputs) {
     const auto source = imaging::open_pictures(input);
@@ -47,7 +49,7 @@ CeilingDriveCount follow_pictures(const CeilingCalibrationOptions& options,
                                      camera.height));
       ++count.pictures;
       const double time_s = picture->time_s.value_or(count.pictures / options.ceiling.rate_hz);
-      const auto step = follower.next(imaging::grey_image(frame), Stamp::from_seconds(time_s));
+      const auto step = calibration.next(imaging::grey_image(frame), Stamp::from_seconds(time_s));
       count.patches += step.scan.patches.size();
       count.fused += step.update == localization::CeilingUpdate::fused ? 1 : 0;
       count.contradictory += step.update == localization::CeilingUpdate::gated ? 1 : 0;
@@ -57,9 +59,9 @@ CeilingDriveCount follow_pictures(const CeilingCalibrationOptions& options,
 }
 
 /// Estimates with their σ.
-std::string ceiling_parameters(const perception::CeilingFollower& follower, double rise_m) {
-  const localization::CeilingCameraErrors errors = follower.camera_errors();
-  const Eigen::Vector3d sigma = follower.camera_errors_covariance().diagonal().cwiseSqrt();
+std::string ceiling_parameters(const perception::CeilingCalibration::Result& found, double rise_m) {
+  const localization::CeilingCameraErrors& errors = found.errors;
+  const Eigen::Vector3d sigma = found.covariance.diagonal().cwiseSqrt();
   const double rise = rise_m * std::exp(errors.log_height);
   return fmt::format(
       "parameter,estimate,sigma\ntilt_x_deg,{:.5f},{:.5f}\ntilt_y_deg,{:.5f},{:.5f}\n"
@@ -68,8 +70,7 @@ std::string ceiling_parameters(const perception::CeilingFollower& follower, doub
       rise * sigma[2]);
 }
 
-std::string ceiling_covariance(const perception::CeilingFollower& follower) {
-  const Eigen::Matrix3d P = follower.camera_errors_covariance();
+std::string ceiling_covariance(const Eigen::Matrix3d& P) {
   const char* names[] = {"tilt_x_rad", "tilt_y_rad", "log_rise"};
   std::string text = "parameter,tilt_x_rad,tilt_y_rad,log_rise\n";
   for (int i = 0; i < 3; ++i)
@@ -79,8 +80,8 @@ std::string ceiling_covariance(const perception::CeilingFollower& follower) {
 
 int calibrate_under_ceiling(const CeilingCalibrationOptions& options) {
   const perception::CeilingView view = ceiling_view(options.ceiling, options.camera);
-  perception::CeilingFollower follower(view);
-  const CeilingDriveCount count = follow_pictures(options, view.camera, follower);
+  perception::CeilingCalibration calibration(view);
+  const CeilingDriveCount count = follow_pictures(options, view.camera, calibration);
   if (!options.quiet)
     fmt::print(stderr,
                "{} pictures, {} patches, {} pictures fused, {} that contradict the others\n",
@@ -93,12 +94,13 @@ int calibrate_under_ceiling(const CeilingCalibrationOptions& options) {
                count.fused, kFewest);
     return 1;
   }
-  const std::string table = ceiling_parameters(follower, view.rise_m);
+  const auto found = calibration.result();
+  const std::string table = ceiling_parameters(found, view.rise_m);
   fmt::print("{}", table);
   if (options.out.empty()) return 0;
   OutputFolder folder(options.out, "calibration.csv");
   folder.add("calibration.csv", table);
-  folder.add("covariance.csv", ceiling_covariance(follower));
+  folder.add("covariance.csv", ceiling_covariance(found.covariance));
   folder.commit();
   return 0;
 }

@@ -13,7 +13,7 @@
 #include "vigia/evaluation/ceiling_study.hpp"
 #include "vigia/evaluation/metrics.hpp"
 #include "vigia/imaging/image_frame.hpp"
-#include "vigia/perception/ceiling_follower.hpp"
+#include "vigia/perception/ceiling_calibration.hpp"
 #include "vigia/report/curve_chart.hpp"
 
 namespace vigia::app {
@@ -29,7 +29,6 @@ using evaluation::CeilingSetting;
 
 constexpr int kPositions = 100;
 constexpr int kLines = 30;
-constexpr int kFlowLines = 6;
 constexpr double kSpeed_mps = 0.1;
 constexpr double kPeriod_s = 0.04;
 constexpr double kCmPerMetre = 100.0;
@@ -355,7 +354,7 @@ void study_turn(const ChonbukRun& run) {
 /// The ceiling's distance is known and right; pipes hang 10 cm below it.
 void study_pipes(const ChonbukRun& run) {
   constexpr double kPipePitch_m = 1.5;
-  auto drives = drives_of(&ideal, run.lines(kFlowLines), kSpeed_mps * kPeriod_s);
+  auto drives = drives_of(&ideal, run.lines(kLines), kSpeed_mps * kPeriod_s);
   for (CeilingDrive& drive : drives) drive.setting.ceiling.pipe_pitch_m = kPipePitch_m;
   const auto frames = evaluation::read_ceiling_drives(drives, {false, true}, run.options.threads);
   double mean = 0.0;
@@ -407,15 +406,17 @@ CalibrationTrial try_calibration(std::uint64_t seed) {
   view.grid = setting.ceiling.grid;
   view.tilt_sigma = kTiltSigma;
   view.height_sigma = kHeightSigma;
-  perception::CeilingFollower follower(view);
+  perception::CeilingCalibration calibration(view);
   Pose2 pose{random.uniform(-50.0, 50.0), random.uniform(-50.0, 50.0), random.uniform(-kPi, kPi)};
   for (int i = 0; i < kPictures; ++i) {
-    follower.next(imaging::grey_image(*hall.expose(pose, i)), Stamp::from_seconds(kPeriod_s * i));
+    calibration.next(imaging::grey_image(*hall.expose(pose, i)),
+                     Stamp::from_seconds(kPeriod_s * i));
     pose = compose(pose, {0.05, 0.0, 0.02});
   }
   const Eigen::Vector3d unit(to_deg(1.0), to_deg(1.0), kCmPerMetre * view.rise_m);
-  const Eigen::Vector3d found = follower.camera_errors().vector();
-  const Eigen::Vector3d sigma = follower.camera_errors_covariance().diagonal().cwiseSqrt();
+  const auto result = calibration.result();
+  const Eigen::Vector3d found = result.errors.vector();
+  const Eigen::Vector3d sigma = result.covariance.diagonal().cwiseSqrt();
   return {unit.cwiseProduct(found - setting.true_errors().vector()), unit.cwiseProduct(sigma)};
 }
 
@@ -644,7 +645,7 @@ evaluation::PaperTable reproduce_chonbuk(const PaperOptions& options) {
                  {"speed_mps", kSpeed_mps},
                  {"period_s", kPeriod_s}};
   study_positions(run);
-  const auto drives = drives_of(&ideal, run.lines(kFlowLines), kSpeed_mps * kPeriod_s);
+  const auto drives = drives_of(&ideal, run.lines(kLines), kSpeed_mps * kPeriod_s);
   study_mountings(run, from_deg(0.2), 0.005);
   study_mountings(run, from_deg(0.7), 0.02);
   const auto frames = study_flow(run, drives);

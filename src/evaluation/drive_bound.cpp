@@ -3,7 +3,10 @@
 #include "true_association.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
+#include "vigia/core/overloaded.hpp"
 #include "vigia/localization/flow_fed_localizer.hpp"
 #include "vigia/localization/motion_fusion.hpp"
 
@@ -35,12 +38,19 @@ std::optional<localization::CornerFilter> corner_bound(const EstimatorSetup& set
 DriveBound::DriveBound(const EstimatorSetup& setup)
     : setup_(setup),
       states_{PosteriorBound(setup.prior_covariance, setup.on_ground, setup.sensor),
-              ceiling_bound(setup), corner_bound(setup)} {
+              ceiling_bound(setup),
+              corner_bound(setup),
+              false,
+              {}} {
   if (setup_.field) field_.emplace(*setup_.field);
 }
 
-void DriveBound::States::move(const Move& move, const OdometryNoise& odometry) {
-  move_looks_and_corners(move, odometry);
+void DriveBound::States::move(const Move& move, const EstimatorSetup& setup) {
+  if (move.flow && setup.ceiling) {
+    follow(move, setup);
+    return;
+  }
+  move_looks_and_corners(move, setup.odometry);
   if (!ceiling) return;
   ceiling->place({move.before, {}, {}});
   ceiling->predict(move.u);
@@ -54,6 +64,19 @@ void DriveBound::States::move_looks_and_corners(const Move& move, const Odometry
   }
 }
 
+void DriveBound::States::follow(Move move, const EstimatorSetup& setup) {
+  localization::CeilingFilterParams params = setup.ceiling->params;
+  params.odometry = setup.odometry;
+  if (ceiling) {
+    ceiling->place({move.before, {}, {}});
+    ceiling->predict(move.u, *move.flow);
+  }
+  if (const auto refined = localization::joined_with_flow(move.parts, *move.flow,
+                                                          setup.ceiling->camera, params, trust))
+    move.u = *refined;
+  move_looks_and_corners(move, setup.odometry);
+}
+
 Eigen::Matrix3d DriveBound::States::covariance() const {
   if (by_landmarks) return looks.covariance();
   if (corners) return corners->belief().covariance;
@@ -61,75 +84,111 @@ Eigen::Matrix3d DriveBound::States::covariance() const {
 }
 
 void DriveBound::move(const Pose2& before, const OdometryIncrement& u) {
-  const Move move{before, u};
-  if (setup_.ceiling && setup_.ceiling->flow)
-    waiting_.push_back(move);
-  else
-    states_.move(move, setup_.odometry);
-}
-
-void DriveBound::pass_until(Stamp stamp) {
-  const auto later = std::find_if(waiting_.begin(), waiting_.end(),
-                                  [&](const Move& move) { return stamp < move.u.to; });
-  for (auto move = waiting_.begin(); move != later; ++move) states_.move(*move, setup_.odometry);
-  waiting_.erase(waiting_.begin(), later);
-}
-
-/// The motions between the flow's frames as one, by odometry and flow.
-void DriveBound::follow(const FlowObservation& flow) {
-  pass_until(flow.from);
-  std::vector<OdometryIncrement> parts;
-  for (const Move& move : waiting_)
-    if (move.u.to <= flow.shot.stamp) parts.push_back(move.u);
-  if (parts.empty() || parts.front().from != flow.from) return;
-  Move whole{waiting_.front().before, localization::joined(parts)};
-  ImageShift shift = localization::seen_shift(setup_.ceiling->camera, vigia::move({}, whole.u));
-  shift.covariance = flow.shift.covariance;
-  waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(parts.size()));
-  localization::CeilingFilterParams params = setup_.ceiling->params;
-  params.odometry = setup_.odometry;
-  if (states_.ceiling) {
-    states_.ceiling->place({whole.before, {}, {}});
-    states_.ceiling->predict(whole.u, shift);
-  }
-  if (const auto refined =
-          localization::joined_with_flow(parts, shift, setup_.ceiling->camera, params, trust_))
-    whole.u = *refined;
-  states_.move_looks_and_corners(whole, setup_.odometry);
+  now_ = std::max(now_, u.to);
+  steps_.emplace_back(Move{before, u, {}, std::nullopt});
+  settle();
 }
 
 void DriveBound::learn(const Observation& observation, const mission::ExposureTruth& truth) {
   if (const auto* flow = std::get_if<FlowObservation>(&observation)) {
-    if (setup_.ceiling && setup_.ceiling->flow) follow(*flow);
-    return;
+    if (follows_flow()) join(*flow);
+  } else if (auto teach = lesson(observation, truth)) {
+    insert({shot_of(observation).stamp, std::move(teach)});
   }
-  pass_until(shot_of(observation).stamp);
+  settle();
+}
+
+/// The motions between the flow's frames become one, by odometry and flow.
+void DriveBound::join(const FlowObservation& flow) {
+  const auto is_first = [&](const Step& step) {
+    const auto* move = std::get_if<Move>(&step);
+    return move != nullptr && !move->flow && move->u.from == flow.from;
+  };
+  const auto first = std::find_if(steps_.begin(), steps_.end(), is_first);
+  std::vector<OdometryIncrement> parts;
+  auto last = first;
+  for (; last != steps_.end(); ++last) {
+    const auto* move = std::get_if<Move>(&*last);
+    if (move == nullptr || move->flow || flow.shot.stamp < move->u.to) break;
+    parts.push_back(move->u);
+  }
+  if (parts.empty()) return;
+  Move whole{std::get<Move>(*first).before, localization::joined(parts), parts, std::nullopt};
+  whole.flow = localization::seen_shift(setup_.ceiling->camera, vigia::move({}, whole.u));
+  whole.flow->covariance = flow.shift.covariance;
+  *first = std::move(whole);
+  steps_.erase(std::next(first), last);
+}
+
+/// What an image teaches; nothing where it shows nothing that is modelled.
+std::function<void(DriveBound::States&)> DriveBound::lesson(
+    const Observation& observation, const mission::ExposureTruth& truth) const {
   if (const auto* seen = std::get_if<FieldObservation>(&observation); seen && field_) {
     // Of the points as they truly lie: on the map's lines or by chance.
-    states_.looks.update(
-        field_->linearise(seen->scan.points, truth.pose, field_->params().clutter).complete);
-    return;
+    const Eigen::Matrix3d information =
+        field_->linearise(seen->scan.points, truth.pose, field_->params().clutter).complete;
+    return [information](States& states) { states.looks.update(information); };
   }
-  if (const auto* seen = std::get_if<PatchesObservation>(&observation); seen && states_.ceiling) {
-    states_.ceiling->inform({truth.pose, {}, {}}, seen->patches);
-    return;
-  }
-  if (const auto* seen = std::get_if<StereoObservation>(&observation); seen && states_.corners) {
-    states_.corners->relinearise(truth.pose);
-    states_.corners->update(seen->corners);
-    return;
-  }
+  if (const auto* seen = std::get_if<PatchesObservation>(&observation); seen && states_.ceiling)
+    return [pose = truth.pose, patches = seen->patches](States& states) {
+      states.ceiling->inform({pose, {}, {}}, patches);
+    };
+  if (const auto* seen = std::get_if<StereoObservation>(&observation); seen && states_.corners)
+    return [pose = truth.pose, corners = seen->corners](States& states) {
+      states.corners->relinearise(pose);
+      states.corners->update(corners);
+    };
   const Landmark* landmark =
       true_landmark(observation, setup_.landmarks, setup_.on_ground, truth.pose, truth.bias);
-  if (landmark == nullptr) return;
-  states_.by_landmarks = true;
-  states_.looks.update(truth.pose, truth.bias, *landmark, observation);
+  if (landmark == nullptr) return {};
+  return [truth, shown = *landmark, observation](States& states) {
+    states.by_landmarks = true;
+    states.looks.update(truth.pose, truth.bias, shown, observation);
+  };
+}
+
+/// After the motion in which it was exposed, and what was exposed before it.
+void DriveBound::insert(Image image) {
+  now_ = std::max(now_, image.stamp);
+  const auto is_later = [&](const Step& step) {
+    return std::visit(Overloaded{[&](const Move& move) { return image.stamp <= move.u.from; },
+                                 [&](const Image& other) { return image.stamp < other.stamp; }},
+                      step);
+  };
+  steps_.insert(std::find_if(steps_.begin(), steps_.end(), is_later), std::move(image));
+}
+
+/// Whether no image comes any more that was exposed before the step's end.
+bool DriveBound::is_settled(const Step& step) const {
+  const Stamp end = std::visit(Overloaded{[](const Move& move) { return move.u.to; },
+                                          [](const Image& image) { return image.stamp; }},
+                               step);
+  return end <= now_ - setup_.longest_delay;
+}
+
+/// What is settled goes into the states. A motion that a flow may join goes when the next step
+/// does.
+void DriveBound::settle() {
+  auto settled = steps_.begin();
+  for (auto step = steps_.begin(); step != steps_.end() && is_settled(*step); ++step) {
+    const auto* move = std::get_if<Move>(&*step);
+    const bool waits = follows_flow() && move != nullptr && !move->flow;
+    if (!waits) settled = std::next(step);
+  }
+  for (auto step = steps_.begin(); step != settled; ++step) apply(*step, states_);
+  steps_.erase(steps_.begin(), settled);
+}
+
+void DriveBound::apply(const Step& step, States& states) const {
+  std::visit(Overloaded{[&](const Move& move) { states.move(move, setup_); },
+                        [&](const Image& image) { image.teach(states); }},
+             step);
 }
 
 Eigen::Matrix3d DriveBound::covariance() const {
-  if (waiting_.empty()) return states_.covariance();
+  if (steps_.empty()) return states_.covariance();
   States ahead = states_;
-  for (const Move& move : waiting_) ahead.move(move, setup_.odometry);
+  for (const Step& step : steps_) apply(step, ahead);
   return ahead.covariance();
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "vigia/mission/delays.hpp"
 #include "vigia/mission/localizers.hpp"
 
 namespace vigia::evaluation {
@@ -45,7 +46,8 @@ EstimatorSetup estimator_setup(const mission::MissionSetup& setup, const std::st
           setup.prior.has_value(),
           setup.world.field,
           ceiling_of(setup, localizer),
-          corners_of(setup)};
+          corners_of(setup),
+          mission::longest_delay(setup)};
 }
 
 }  // namespace

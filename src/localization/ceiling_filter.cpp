@@ -50,10 +50,11 @@ CeilingFilter::CeilingFilter(const CeilingCamera& camera, const CeilingGrid& gri
   reset({}, anywhere());
 }
 
-void CeilingFilter::reset(Stamp stamp, const Prior& prior) {
+void CeilingFilter::reset(Stamp stamp, const Prior& prior, const CeilingCameraErrors& about) {
   stamp_ = stamp;
   x_ = Eigen::VectorXd::Zero(kCommon);
   x_.head<3>() = prior.pose.vector();
+  x_.segment<3>(3) = about.vector();
   P_ = Eigen::MatrixXd::Zero(kCommon, kCommon);
   P_.topLeftCorner<3, 3>() = prior.covariance;
   P_(3, 3) = P_(4, 4) = params_.tilt_sigma * params_.tilt_sigma;
@@ -338,12 +339,28 @@ Eigen::VectorXd CeilingFilter::state_at(const Pose2& pose) const {
   return at;
 }
 
+/// H M: a patch's three rows of H have the common states and its own placement alone, so that the
+/// product takes as many numbers a patch as it has, not as the state has.
+Eigen::MatrixXd CeilingFilter::by_rows(const std::vector<Seen>& seen, const Eigen::MatrixXd& H,
+                                       const Eigen::MatrixXd& M) const {
+  Eigen::MatrixXd product(H.rows(), M.cols());
+  Eigen::Index row = 0;
+  for (const Seen& one : seen) {
+    const Eigen::Index place = patches_.at(one.cell);
+    product.middleRows<3>(row).noalias() = H.block<3, kCommon>(row, 0) * M.topRows<kCommon>();
+    product.middleRows<3>(row).noalias() += H.block<3, 3>(row, place) * M.middleRows<3>(place);
+    row += 3;
+  }
+  return product;
+}
+
 CeilingFilter::Linearised CeilingFilter::linearise(const std::vector<Seen>& seen,
                                                    const Eigen::VectorXd& at) const {
   const auto rows = 3 * static_cast<Eigen::Index>(seen.size());
   Linearised all{Eigen::VectorXd::Zero(rows),
                  Eigen::MatrixXd::Zero(rows, x_.size()),
-                 Eigen::MatrixXd::Identity(rows, rows),
+                 Eigen::MatrixXd::Zero(rows, rows),
+                 {},
                  {}};
   const auto errors = CeilingCameraErrors::from_vector(at.segment<3>(3));
   const double theta = at[2];
@@ -369,7 +386,8 @@ CeilingFilter::Linearised CeilingFilter::linearise(const std::vector<Seen>& seen
   Eigen::VectorXd off = at - x_;
   off[2] = wrap_angle(off[2]);
   all.y += all.H * off;
-  all.S = all.H * P_ * all.H.transpose() + all.R;
+  all.HP = by_rows(seen, all.H, P_);
+  all.S = by_rows(seen, all.H, all.HP.transpose()).transpose() + all.R;
   return all;
 }
 
@@ -411,17 +429,22 @@ void CeilingFilter::weigh_shifts(const Linearised& all, const std::vector<Seen>&
   const int reach =
       std::clamp(static_cast<int>(std::ceil(5.0 * belief_.position_sigma() / grid_.pitch_m)), 1,
                  kFarthestShift);
+  // Of the shift (i, j) the residuals are less by aside · (i, j), the same two columns of every
+  // patch.
+  Eigen::MatrixXd aside = Eigen::MatrixXd::Zero(all.y.size(), 2);
+  const Eigen::Matrix2d R = grid_.pitch_m * world_to_robot(at.theta);
+  for (Eigen::Index row = 0; row < all.y.size(); row += 3) aside.middleRows<2>(row) = R;
   const Eigen::LDLT<Eigen::MatrixXd> S(all.S);
-  const Eigen::Matrix2d R = world_to_robot(at.theta);
+  const Eigen::MatrixXd weighed_aside = S.solve(aside);
+  const Eigen::Matrix2d squares = aside.transpose() * weighed_aside;
+  const Eigen::Vector2d slopes = weighed_aside.transpose() * all.y;
   Shifts weighed;
-  std::map<CeilingCell, double> moved;
+  std::map<CeilingCell, double> moved;  // χ² beside that of no shift
   double least = std::numeric_limits<double>::infinity();
   for (std::int64_t i = -reach; i <= reach; ++i) {
     for (std::int64_t j = -reach; j <= reach; ++j) {
-      const Eigen::Vector2d aside = R * cell_centre(grid_, {i, j});
-      Eigen::VectorXd y = all.y;
-      for (Eigen::Index row = 0; row < y.size(); row += 3) y.segment<2>(row) -= aside;
-      const double square = y.dot(S.solve(y));
+      const Eigen::Vector2d by(static_cast<double>(i), static_cast<double>(j));
+      const double square = by.dot(squares * by - 2.0 * slopes);
       moved[{i, j}] = square;
       least = std::min(least, square);
     }
@@ -502,14 +525,15 @@ void CeilingFilter::shift_by(CeilingCell shift) {
 /// Kalman's; the camera's errors are considered and not updated (Schmidt 1966) where patches may be
 /// those of the frames before, under other cells: to learn from them anew would count them twice.
 Eigen::MatrixXd CeilingFilter::gain(const Linearised& all) const {
-  Eigen::MatrixXd K = P_ * all.H.transpose() *
-                      all.S.ldlt().solve(Eigen::MatrixXd::Identity(all.S.rows(), all.S.cols()));
+  Eigen::MatrixXd K = all.S.ldlt().solve(all.HP).transpose();
   if (cells_unsure_) K.middleRows<3>(3).setZero();
   return K;
 }
 
 Eigen::VectorXd CeilingFilter::fused_state(const Linearised& all) const {
-  Eigen::VectorXd x = x_ + gain(all) * all.y;
+  Eigen::VectorXd step = all.HP.transpose() * all.S.ldlt().solve(all.y);
+  if (cells_unsure_) step.segment<3>(3).setZero();
+  Eigen::VectorXd x = x_ + step;
   x[2] = wrap_angle(x[2]);
   return x;
 }
@@ -526,13 +550,15 @@ Eigen::VectorXd CeilingFilter::converged(const std::vector<Seen>& seen, const Po
   return at;
 }
 
-void CeilingFilter::fuse(const Linearised& all) {
+void CeilingFilter::fuse(const Linearised& all, const std::vector<Seen>& seen) {
   const Eigen::MatrixXd K = gain(all);
   x_ += K * all.y;
   x_[2] = wrap_angle(x_[2]);
-  // Joseph's form: the placement errors of a perfect grid have no variance at all.
-  const Eigen::MatrixXd left = Eigen::MatrixXd::Identity(P_.rows(), P_.cols()) - K * all.H;
-  const Eigen::MatrixXd P = left * P_ * left.transpose() + K * all.R * K.transpose();
+  // Joseph's form, since the placement errors of a perfect grid have no variance at all:
+  // L P Lᵀ + K R Kᵀ with L = I − K H, as L P − (L P Hᵀ − K R) Kᵀ.
+  const Eigen::MatrixXd left = P_ - K * all.HP;
+  const Eigen::MatrixXd lacking = by_rows(seen, all.H, left.transpose()).transpose() - K * all.R;
+  const Eigen::MatrixXd P = left - lacking * K.transpose();
   // What rounding leaves of asymmetry grows from frame to frame, along directions without variance.
   P_ = 0.5 * (P + P.transpose());
 }
@@ -568,7 +594,7 @@ CeilingUpdate CeilingFilter::update(const std::vector<PatchImage>& patches) {
   const Eigen::VectorXd at = converged(passed, start.pose);
   const Linearised all = linearise(passed, at);
   weigh_shifts(all, seen, Pose2::from_vector(at.head<3>()));
-  fuse(all);
+  fuse(all, passed);
   unknown_s_ = 0.0;
   const auto best =
       std::max_element(shifts_.begin(), shifts_.end(),
@@ -594,7 +620,7 @@ void CeilingFilter::inform(const CeilingTruthState& truth, const std::vector<Pat
   if (seen.empty()) return;
   hold(seen, truth.pose, false);
   place(truth);
-  fuse(linearise(seen, x_));
+  fuse(linearise(seen, x_), seen);
   place(truth);
 }
 

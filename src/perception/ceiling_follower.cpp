@@ -41,9 +41,11 @@ tracking::PatchFinderParams finder_of(const CeilingView& view) {
   return params;
 }
 
-CeilingFollower::CeilingFollower(const CeilingView& view)
+CeilingFollower::CeilingFollower(const CeilingView& view,
+                                 const localization::CeilingCameraErrors& about)
     : camera_(camera_under(view)),
       grid_(view.grid),
+      about_(about),
       finder_(finder_of(view)),
       flow_(camera_.model, camera_.rMc.linear()),
       filter_(camera_, view.grid, filter_params_of(view)),
@@ -58,7 +60,7 @@ bool CeilingFollower::begin(const tracking::PatchScan& scan, Stamp stamp) {
       std::min_element(scan.patches.begin(), scan.patches.end(),
                        [&](const auto& a, const auto& b) { return off(a) < off(b); });
   if (nearest == scan.patches.end()) return false;
-  const auto patch = localization::on_ceiling(camera_, *nearest);
+  const auto patch = localization::on_ceiling(camera_, *nearest, about_);
   if (!patch) return false;
   Pose2 pose;
   pose.theta = wrap_angle(-patch->psi);
@@ -69,22 +71,23 @@ bool CeilingFollower::begin(const tracking::PatchScan& scan, Stamp stamp) {
   pose.y = p.y();
   const double sigma_m = kStartSigma_m + start_tilt_m_;
   const Eigen::Vector3d sigma(sigma_m, sigma_m, kStartTurn);
-  filter_.reset(stamp, {pose, sigma.cwiseAbs2().asDiagonal()});
+  filter_.reset(stamp, {pose, sigma.cwiseAbs2().asDiagonal()}, about_);
   return true;
 }
 
-CeilingFollower::Step CeilingFollower::next(const vpImage<unsigned char>& picture, Stamp stamp) {
-  Step step;
-  step.scan = finder_.find(imaging::ImageFrame(picture));
-  const auto motion = flow_.next(picture);
-  step.flow = motion.has_value();
+CeilingFollower::Sight CeilingFollower::look(const vpImage<unsigned char>& picture, Stamp stamp) {
+  return {stamp, finder_.find(imaging::ImageFrame(picture)), flow_.next(picture)};
+}
+
+CeilingFollower::Step CeilingFollower::follow(const Sight& sight) {
+  Step step{sight.scan, sight.motion.has_value(), std::nullopt};
   if (!begun_) {
-    begun_ = begin(step.scan, stamp);
+    begun_ = begin(step.scan, sight.stamp);
     if (!begun_) return step;
-  } else if (motion) {
-    filter_.predict(*motion, stamp);
+  } else if (sight.motion) {
+    filter_.predict(*sight.motion, sight.stamp);
   } else {
-    filter_.predict_unknown(stamp);
+    filter_.predict_unknown(sight.stamp);
   }
   step.update = filter_.update(step.scan.patches);
   return step;

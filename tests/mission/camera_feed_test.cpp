@@ -1,8 +1,11 @@
 #include "camera_feed.hpp"
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "vigia/mission/delays.hpp"
 #include "vigia/mission/setup.hpp"
 
 namespace vigia::mission {
@@ -69,6 +72,25 @@ TEST(CameraFeed, ProcessingFasterThanFramesArriveDropsNone) {
   const Deliveries quick = deliveries_of(Camera{}, {}, 4, Duration{30'000'000});
   EXPECT_THAT(quick.exposed_ms, ElementsAre(40, 80, 120));
   EXPECT_THAT(quick.arrived_ms, ElementsAre(80, 120, 160));
+}
+
+TEST(CameraFeed, LongestDelayIsThatOfTheLatestImage) {
+  MissionSetup setup;
+  for (const double latency_s : {0.0, 0.05})
+    for (const double period_s : {0.0, 0.1, 0.24, 0.4})
+      for (const double processing_s : {0.0, 0.03, 0.1, 0.28}) {
+        Camera camera;
+        camera.period_s = period_s;
+        camera.latency_s = latency_s;
+        setup.disturbances.latency = sim::LatencyParams{0.02, processing_s};
+        const Deliveries all = deliveries_of(camera, Duration::from_seconds(0.02), 100,
+                                             Duration::from_seconds(processing_s));
+        std::int64_t latest_ms = 0;
+        for (std::size_t i = 0; i < all.exposed_ms.size(); ++i)
+          latest_ms = std::max(latest_ms, all.arrived_ms[i] - all.exposed_ms[i]);
+        EXPECT_EQ(longest_delay(setup, camera).ns, latest_ms * 1'000'000)
+            << latency_s << ' ' << period_s << ' ' << processing_s;
+      }
 }
 
 }  // namespace

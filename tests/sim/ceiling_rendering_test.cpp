@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -87,6 +88,54 @@ TEST(CeilingRendering, WindowsAreCropsOfTheFullFrame) {
       for (int u = 0; u < 40; ++u)
         ASSERT_EQ(part[static_cast<std::size_t>(v * 40 + u)],
                   whole[static_cast<unsigned>(window.v + v)][window.u + u]);
+  }
+}
+
+/// Grey levels about the picture's middle, each less the mean of its neighbours in eight
+/// directions.
+std::vector<double> fine_texture(const CeilingScene& scene, double x, double y) {
+  constexpr unsigned kHalf = 40;
+  constexpr unsigned kStep = 6;
+  const vpImage<unsigned char> image =
+      imaging::grey_image(*scene.expose(upward(x, y, 0.0), camera(554.26), {}, imaging_of(0.0)));
+  std::vector<double> texture;
+  for (unsigned v = 240 - kHalf; v < 240 + kHalf; ++v) {
+    for (unsigned u = 320 - kHalf; u < 320 + kHalf; ++u) {
+      double around = 0.0;
+      for (const unsigned dv : {v - kStep, v, v + kStep})
+        for (const unsigned du : {u - kStep, u, u + kStep}) around += image[dv][du] / 9.0;
+      texture.push_back(image[v][u] - around);
+    }
+  }
+  return texture;
+}
+
+double correlation(const std::vector<double>& a, const std::vector<double>& b) {
+  double ab = 0.0;
+  double aa = 0.0;
+  double bb = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ab += a[i] * b[i];
+    aa += a[i] * a[i];
+    bb += b[i] * b[i];
+  }
+  return ab / std::sqrt(aa * bb);
+}
+
+TEST(CeilingRendering, TheTextureUnderAPatchIsNotThatUnderItsNeighbours) {
+  for (const double pitch_m : {0.3, 0.8, 1.0, 1.5, 3.0}) {
+    CeilingTruth truth;
+    truth.grid.pitch_m = pitch_m;
+    truth.missing = 1.0;
+    const CeilingScene scene(wide_hall(), {}, truth, 3);
+    const auto here = fine_texture(scene, 0.0, 0.0);
+    ASSERT_GT(correlation(here, here), 0.99);
+    for (const int cells : {1, 2, 3, 4}) {
+      EXPECT_LT(correlation(here, fine_texture(scene, cells * pitch_m, 0.0)), 0.5)
+          << pitch_m << ' ' << cells;
+      EXPECT_LT(correlation(here, fine_texture(scene, 0.0, cells * pitch_m)), 0.5)
+          << pitch_m << ' ' << cells;
+    }
   }
 }
 

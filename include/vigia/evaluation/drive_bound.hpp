@@ -1,12 +1,16 @@
 #pragma once
 
+#include <deque>
+#include <functional>
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "vigia/core/ceiling_grid.hpp"
 #include "vigia/core/field_map.hpp"
+#include "vigia/core/stamp.hpp"
 #include "vigia/evaluation/pcrlb.hpp"
 #include "vigia/localization/ceiling_filter.hpp"
 #include "vigia/localization/corner_filter.hpp"
@@ -35,11 +39,13 @@ struct EstimatorSetup {
   std::optional<Ceiling> ceiling = std::nullopt;
   /// A stereo pair on a field with goals, and what its calibration may miss.
   std::optional<localization::CornerFilterParams> corners = std::nullopt;
+  Duration longest_delay = {};  ///< from an exposure to when its image is observed, at most
 };
 
 /// The posterior Cramér–Rao bound along a drive by what one localizer fused, whatever kind of
-/// observations those are; linearised at the true state and with the true association. Where the
-/// localizer follows a ceiling's flow, a motion waits for it, as there.
+/// observations those are; linearised at the true state and with the true association. An image
+/// teaches what it says of the pose at its exposure, from its delivery on: the motions since then
+/// go over it again. Where the localizer follows a ceiling's flow, a motion waits for it, as there.
 class DriveBound {
  public:
   explicit DriveBound(const EstimatorSetup& setup);
@@ -52,9 +58,12 @@ class DriveBound {
   Eigen::Matrix3d covariance() const;
 
  private:
+  /// By odometry, or between two frames of a flow by both.
   struct Move {
     Pose2 before;
     OdometryIncrement u;
+    std::vector<OdometryIncrement> parts;  ///< of a flow's
+    std::optional<ImageShift> flow;
   };
   /// One of them bounds: with a ceiling its placement errors are states, with a stereo pair the
   /// errors of its calibration.
@@ -63,20 +72,33 @@ class DriveBound {
     std::optional<localization::CeilingFilter> ceiling;
     std::optional<localization::CornerFilter> corners;
     bool by_landmarks = false;  ///< their images have been learned from
+    localization::FlowTrust trust;
 
-    void move(const Move& move, const OdometryNoise& odometry);
+    void move(const Move& move, const EstimatorSetup& setup);
     void move_looks_and_corners(const Move& move, const OdometryNoise& odometry);
+    void follow(Move move, const EstimatorSetup& setup);
     Eigen::Matrix3d covariance() const;
   };
+  struct Image {
+    Stamp stamp;  ///< of its exposure
+    std::function<void(States&)> teach;
+  };
+  using Step = std::variant<Move, Image>;
 
-  void pass_until(Stamp stamp);
-  void follow(const FlowObservation& flow);
+  bool follows_flow() const { return setup_.ceiling && setup_.ceiling->flow; }
+  void join(const FlowObservation& flow);
+  std::function<void(States&)> lesson(const Observation& observation,
+                                      const mission::ExposureTruth& truth) const;
+  void insert(Image image);
+  bool is_settled(const Step& step) const;
+  void settle();
+  void apply(const Step& step, States& states) const;
 
   EstimatorSetup setup_;
   std::optional<localization::FieldModel> field_;
-  States states_;
-  localization::FlowTrust trust_;
-  std::vector<Move> waiting_;  ///< for the flow
+  Stamp now_;
+  States states_;           ///< before the steps
+  std::deque<Step> steps_;  ///< that a late image or a flow may still come into, in order of time
 };
 
 }  // namespace vigia::evaluation

@@ -66,7 +66,7 @@ class CeilingFilter {
   CeilingFilter(const CeilingCamera& camera, const CeilingGrid& grid,
                 const CeilingFilterParams& params);
 
-  void reset(Stamp stamp, const Prior& prior);
+  void reset(Stamp stamp, const Prior& prior, const CeilingCameraErrors& about = {});
   void predict(const OdometryIncrement& increment);
   /// The motion between two frames by optical flow. It says nothing where it is faster than the
   /// robot can be, nor where the robot may have gone half a pitch: the patches repeat.
@@ -100,6 +100,7 @@ class CeilingFilter {
     Eigen::VectorXd y;
     Eigen::MatrixXd H;
     Eigen::MatrixXd R;
+    Eigen::MatrixXd HP;
     Eigen::MatrixXd S;
   };
   using Shifts = std::map<CeilingCell, double>;  ///< by whole cells, weights
@@ -122,6 +123,8 @@ class CeilingFilter {
   bool in_sight(const CeilingCell& cell, const Pose2& at, double margin_px) const;
   void hold(const std::vector<Seen>& seen, const Pose2& at, bool afresh);
   Eigen::VectorXd state_at(const Pose2& pose) const;
+  Eigen::MatrixXd by_rows(const std::vector<Seen>& seen, const Eigen::MatrixXd& H,
+                          const Eigen::MatrixXd& M) const;
   Linearised linearise(const std::vector<Seen>& seen, const Eigen::VectorXd& at) const;
   std::vector<Seen> gated(const std::vector<Seen>& seen, const Linearised& all) const;
   std::vector<Seen> passed_gate(const std::vector<Seen>& seen, const Pose2& start);
@@ -132,7 +135,7 @@ class CeilingFilter {
   void weigh_shifts(const Linearised& all, const std::vector<Seen>& seen, const Pose2& at);
   void judge_presence(const std::vector<Seen>& seen, const Pose2& at);
   void normalise_shifts();
-  void fuse(const Linearised& all);
+  void fuse(const Linearised& all, const std::vector<Seen>& seen);
   void doubt();
   void shift_by(CeilingCell shift);
   using MotionJacobian = Eigen::Matrix<double, 3, 6>;

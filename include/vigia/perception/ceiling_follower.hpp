@@ -31,7 +31,18 @@ tracking::PatchFinderParams finder_of(const CeilingView& view);
 /// the same axes: x where u grows, y where v grows, z up; the world's handedness is theirs.
 class CeilingFollower {
  public:
-  explicit CeilingFollower(const CeilingView& view);
+  /// @p about: what the filter takes the camera's errors for at the start.
+  explicit CeilingFollower(const CeilingView& view,
+                           const localization::CeilingCameraErrors& about = {});
+
+  /// What a picture shows.
+  struct Sight {
+    Stamp stamp;
+    tracking::PatchScan scan;
+    std::optional<ImageShift> motion;  ///< since the picture before
+  };
+  /// Looks at the next picture and does not yet follow it.
+  Sight look(const vpImage<unsigned char>& picture, Stamp stamp);
 
   /// What a picture tells.
   struct Step {
@@ -39,7 +50,10 @@ class CeilingFollower {
     bool flow = false;  ///< whether it was matched to the picture before
     std::optional<localization::CeilingUpdate> update;  ///< nothing until a patch has been seen
   };
-  Step next(const vpImage<unsigned char>& picture, Stamp stamp);
+  Step follow(const Sight& sight);
+  Step next(const vpImage<unsigned char>& picture, Stamp stamp) {
+    return follow(look(picture, stamp));
+  }
 
   /// Nothing until a patch has been seen.
   std::optional<Belief> belief() const;
@@ -54,6 +68,7 @@ class CeilingFollower {
 
   localization::CeilingCamera camera_;
   CeilingGrid grid_;
+  localization::CeilingCameraErrors about_;
   tracking::PatchFinder finder_;
   tracking::FrameFlow flow_;
   localization::CeilingFilter filter_;
