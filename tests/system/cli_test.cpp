@@ -165,7 +165,7 @@ TEST_F(Program, ChecksEveryKindOfFileThatItComesWith) {
   for (const auto& [file, said] :
        {std::pair{"/missions/tag-room.yaml", "a mission, \"tag-room\""},
         {"/worlds/mixed-room.yaml", "a world, \"mixed-room\""},
-        {"/fields/12x8.yaml", "a field, 12 × 8 m, with 6 lines"},
+        {"/fields/12x8.yaml", "a field, 12 × 8 m, with 18 lines"},
         {"/robots/b21.yaml", "a robot, \"b21\""},
         {"/campaigns/armingol-policies.yaml", "a campaign, \"armingol-policies\""},
         {"/fuzzy/choice.fll", "a fuzzy rule base, with 3 inputs"}}) {
