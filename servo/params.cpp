@@ -18,8 +18,10 @@ void describe(ParamVisitor& v, GazeParams& p) {
   v.number("settle_deg", p.settle_deg, {0.01, 30.0}, "from the aim, where a slew has arrived");
   v.number("settle_focal", p.settle_focal, {0.001, 1.0},
            "relative distance from the wanted focal length, where a slew has arrived");
-  v.number("lost_grace_s", p.lost_grace_s, {0.0, 10.0}, "unseen this long, a target is lost");
-  v.number("acquire_s", p.acquire_s, {0.0, 60.0}, "not found for this long, the search begins");
+  v.number("lost_grace_s", p.lost_grace_s, {0.0, 10.0},
+           "unseen this long beyond the camera's period, a target is lost");
+  v.number("acquire_s", p.acquire_s, {0.0, 60.0},
+           "not found for this long beyond the camera's period and latency, the search begins");
   v.number("search_s", p.search_s, {0.0, 60.0}, "how long the search lasts");
   v.number("search_step_deg", p.search_step_deg, {0.1, 60.0},
            "pitch of the search spiral at the widest zoom");

@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "vigia/core/noise_params.hpp"
 #include "vigia/sim/params.hpp"
 
@@ -163,6 +165,9 @@ FixedMount describe_fixed_mount(ParamVisitor& v) {
   Eigen::Vector3d rpy_deg = Eigen::Vector3d::Zero();
   v.vector("mount_m", place, {-10.0, 10.0},
            "the optical centre, from the base's centre on the floor");
+  v.require(place.z() > 0.0, "mount_m",
+            fmt::format("the third coordinate, the height above the floor, must be > 0, found {:g}",
+                        place.z()));
   v.vector("rpy_deg", rpy_deg, {-360.0, 360.0},
            "roll, pitch and yaw about the base's x, y and z of a camera that looks ahead: pitch 90 "
            "looks down, -90 up");
@@ -215,6 +220,18 @@ bool has_zoom(const CameraSetup& setup) {
   return std::holds_alternative<ZoomCalibration>(setup.camera.optics);
 }
 
+void require_phase_in_period(ParamVisitor& v, const Camera& camera) {
+  if (camera.period_s == 0.0)
+    v.require(camera.phase_s == 0.0, "phase_s",
+              fmt::format("found {:g}, but without a period_s the camera exposes in every tick: "
+                          "give it one, or leave the phase out",
+                          camera.phase_s));
+  else
+    v.require(camera.phase_s < camera.period_s, "phase_s",
+              fmt::format("found {:g}, must be less than the camera's period_s, {:g}",
+                          camera.phase_s, camera.period_s));
+}
+
 void describe_listed(ParamVisitor& v, RobotSetup& setup) {
   CameraSetup item;
   item.camera.id = static_cast<CameraId>(setup.cameras.size());
@@ -230,7 +247,9 @@ void describe_listed(ParamVisitor& v, RobotSetup& setup) {
   v.require(!second_zoom, "optics", "a robot has one zoom at most");
   v.number("period_s", item.camera.period_s, {0.0, 100.0},
            "between two exposures, each in the tick in which its time falls; 0: one in every tick");
-  v.number("phase_s", item.camera.phase_s, {0.0, 100.0}, "of the first exposure");
+  v.number("phase_s", item.camera.phase_s, {0.0, 100.0},
+           "of the first exposure, less than `period_s`");
+  require_phase_in_period(v, item.camera);
   v.number("latency_s", item.camera.latency_s, {0.0, 10.0},
            "from the middle of the exposure to the delivery");
   setup.cameras.push_back(std::move(item));
@@ -239,6 +258,30 @@ void describe_listed(ParamVisitor& v, RobotSetup& setup) {
 bool has_head(const RobotSetup& setup) {
   return std::any_of(setup.cameras.begin(), setup.cameras.end(),
                      [](const CameraSetup& listed) { return on_head(listed.camera); });
+}
+
+/// Which camera the robot's own hull would surround, if any.
+const Camera* camera_in_hull(const RobotSetup& setup) {
+  const RobotParams& robot = setup.robot;
+  for (const CameraSetup& listed : setup.cameras) {
+    const auto* head = std::get_if<HeadGeometry>(&listed.camera.mount);
+    const Eigen::Vector3d place =
+        head != nullptr ? head->mount_r : Eigen::Vector3d(listed.camera.rMc({}).translation());
+    const double reach = head != nullptr ? head->camera_offset_h.norm() : 0.0;
+    if (place.head<2>().norm() + reach < robot.radius_m && place.z() + reach < robot.body_height_m)
+      return &listed.camera;
+  }
+  return nullptr;
+}
+
+void require_outside_hull(ParamVisitor& v, const RobotSetup& setup) {
+  const Camera* inside = camera_in_hull(setup);
+  if (inside == nullptr) return;
+  v.require(false, "base",
+            fmt::format("camera {} is mounted inside the hull (radius_m {:g}, body_height_m {:g}) "
+                        "and would see nothing else: mount it outside or above, or leave "
+                        "body_height_m out",
+                        inside->id, setup.robot.radius_m, setup.robot.body_height_m));
 }
 
 /// Gives the cameras on the head its geometry, and a robot without such a camera no head.
@@ -325,6 +368,7 @@ void describe(ParamVisitor& v, RobotSetup& setup) {
     if (!listed) setup.cameras.push_back(only);
   });
   if (listed) mount_on_head(setup);
+  require_outside_hull(v, setup);
   v.map("odometry", setup.robot.odometry, "noise of the odometry");
   v.map("sensor", setup.robot.sensor, "noise of the head's and the zoom's readings");
   v.given("range_ring", [&] {

@@ -197,32 +197,70 @@ double skewness(const DarkSpot& spot, const Eigen::Vector2d& axis) {
   return sum;
 }
 
+/// The longer axis of a spot that is one, and forward.
+std::optional<Eigen::Vector2d> forward_axis(const DarkSpot& spot, const Eigen::Matrix2d& covariance,
+                                            double min_ratio) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(covariance);
+  if (axes.eigenvalues()[1] < min_ratio * min_ratio * std::max(axes.eigenvalues()[0], 0.1))
+    return std::nullopt;
+  const Eigen::Vector2d along = axes.eigenvectors().col(1);
+  return skewness(spot, along) < 0.0 ? Eigen::Vector2d(-along) : along;
+}
+
 /// Where a fit may begin: long enough to have a direction.
 std::optional<PatchShape> start_of(const DarkSpot& spot, const DarkChord& chord,
                                    const PatchFinderParams& params, const Window& frame) {
   const double whole = params.length_px * params.width_px * filled_share(params);
   if (spot.open || spot.area > 1.4 * whole) return std::nullopt;
   if (spot.area < (spot.at_border ? 0.35 : 0.4) * whole) return std::nullopt;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(spot.covariance);
-  const double ratio = std::sqrt(axes.eigenvalues()[1] / std::max(axes.eigenvalues()[0], 0.1));
-  if (ratio < (spot.at_border ? 1.3 : 1.8)) return std::nullopt;
+  const auto along = forward_axis(spot, spot.covariance, spot.at_border ? 1.3 : 1.8);
+  if (!along) return std::nullopt;
   PatchShape shape;
-  Eigen::Vector2d along = axes.eigenvectors().col(1);
-  if (skewness(spot, along) < 0.0) along = -along;
   shape.uv = spot.mean;
-  shape.angle = std::atan2(along.y(), along.x());
+  shape.angle = std::atan2(along->y(), along->x());
   shape.patch = chord.patch;
   shape.ground = chord.ground;
   shape.blur = params.blur_px;
   if (spot.at_border) {
     // What is missing lies towards the border.
-    const double seen = std::sqrt(12.0 * axes.eigenvalues()[1]);
+    const double seen = std::sqrt(12.0 * along->dot(spot.covariance * *along));
     const double missing = std::max(0.0, params.length_px - seen);
     const Eigen::Vector2d middle(0.5 * (frame.width - 1), 0.5 * (frame.height - 1));
-    const double out = along.dot(spot.mean - middle) > 0.0 ? 0.5 : -0.5;
-    shape.uv += out * missing * along;
+    const double out = along->dot(spot.mean - middle) > 0.0 ? 0.5 : -0.5;
+    shape.uv += out * missing * *along;
   }
   return shape;
+}
+
+/// … of a patch that moved.
+std::optional<PatchShape> moved_start_of(const DarkSpot& spot, const DarkChord& chord,
+                                         const Eigen::Vector2d& motion,
+                                         const PatchFinderParams& params) {
+  const double whole = params.length_px * params.width_px * filled_share(params);
+  const double smeared = whole + motion.norm() * params.length_px;
+  if (spot.open || spot.at_border || spot.area < 0.4 * whole || spot.area > 1.4 * smeared)
+    return std::nullopt;
+  const auto along = forward_axis(spot, spot.covariance - motion * motion.transpose() / 12.0, 1.1);
+  if (!along) return std::nullopt;
+  PatchShape shape;
+  shape.uv = spot.mean;
+  shape.angle = std::atan2(along->y(), along->x());
+  shape.patch = chord.patch;
+  shape.ground = chord.ground;
+  shape.blur = params.blur_px;
+  shape.motion = motion;
+  return shape;
+}
+
+/// What a spot that is too wide for a patch moved across its length, if that is why.
+std::optional<Eigen::Vector2d> motion_across(const DarkSpot& spot,
+                                             const PatchFinderParams& params) {
+  if (spot.open || spot.at_border) return std::nullopt;
+  const double width = spot.area / params.length_px;
+  const auto along = forward_axis(spot, spot.covariance, 1.1);
+  if (!along || width < 1.2 * params.width_px || width > 0.9 * params.length_px)
+    return std::nullopt;
+  return width * Eigen::Vector2d(-along->y(), along->x());
 }
 
 constexpr double kMaxLogOdds = 1e3;
@@ -230,11 +268,24 @@ constexpr double kOneSidedLogOdds = 30.0;  // the other direction does not come 
 constexpr double kMaxTrace_px2 = 0.1;      // of a whole patch's position
 constexpr double kMaxCutTrace_px2 = 4.0;
 
+constexpr double kMotionSpread_px = 1.0;  // of what patches of a frame moved
+constexpr double kMotionSpread = 0.1;     // … and of its length
+constexpr int kMaxFailures = 4;
+
 /// The better of the two directions, and by how much.
 struct DirectedFit {
   PatchFit fit;
   double forward_log_odds = 0.0;
 };
+std::optional<DirectedFit> better_of(const std::optional<PatchFit>& one,
+                                     const std::optional<PatchFit>& other) {
+  if (!one && !other) return std::nullopt;
+  if (!one || !other) return DirectedFit{one ? *one : *other, kOneSidedLogOdds};
+  const PatchFit& best = one->square <= other->square ? *one : *other;
+  const double less = std::abs(one->square - other->square);
+  return DirectedFit{best, std::min(0.5 * less / (best.noise * best.noise), kMaxLogOdds)};
+}
+
 std::optional<DirectedFit> fit_directed(const PatchWindow& window, PatchShape start,
                                         const PatchFinderParams& params) {
   constexpr double kNever = 1e30;
@@ -244,11 +295,16 @@ std::optional<DirectedFit> fit_directed(const PatchWindow& window, PatchShape st
   // So much worse after two steps is no direction.
   const double give_up = one ? one->square + 2.0 * kMaxLogOdds * one->noise * one->noise : kNever;
   const auto other = fit_patch(window, start, params, give_up);
-  if (!one && !other) return std::nullopt;
-  if (!one || !other) return DirectedFit{one ? *one : *other, kOneSidedLogOdds};
-  const PatchFit& best = one->square <= other->square ? *one : *other;
-  const double less = std::abs(one->square - other->square);
-  return DirectedFit{best, std::min(0.5 * less / (best.noise * best.noise), kMaxLogOdds)};
+  return better_of(one, other);
+}
+
+/// The better of the two directions of a shape that moved while it was exposed.
+std::optional<DirectedFit> fit_moved_directed(const PatchWindow& window, PatchShape start,
+                                              const PatchFinderParams& params) {
+  const auto one = fit_moved(window, params, start);
+  if (!params.polarity) return one ? std::optional<DirectedFit>({*one, 0.0}) : std::nullopt;
+  start.angle = wrap_angle(start.angle + kPi);
+  return better_of(one, fit_moved(window, params, start));
 }
 
 /// A dark spot of a textured ceiling passes for a patch out of focus, with residuals that go
@@ -307,30 +363,134 @@ std::vector<DarkChord> scan_rows(const imaging::Frame& frame, const PatchFinderP
   return chords;
 }
 
+/// A dark spot, what was fitted to it, and whether that is a patch.
+struct Candidate {
+  PatchWindow window;
+  DarkSpot spot;
+  DarkChord chord;
+  std::optional<DirectedFit> fit;    ///< of a patch
+  std::optional<DirectedFit> moved;  ///< of one if others of the frame moved as much
+};
+
+bool alike(const Eigen::Vector2d& one, const Eigen::Vector2d& other) {
+  const double off = std::min((one - other).norm(), (one + other).norm());
+  return off < kMotionSpread_px + kMotionSpread * one.norm();
+}
+
+class CandidateJudge {
+ public:
+  CandidateJudge(const PatchFinderParams& params, const Window& frame)
+      : params_(params), frame_(frame) {}
+
+  void judge(Candidate& candidate) {
+    const auto start = start_of(candidate.spot, candidate.chord, params_, frame_);
+    if (!start) {
+      if (const auto motion = motion_across(candidate.spot, params_))
+        try_moved(candidate, moved_start_of(candidate.spot, candidate.chord, *motion, params_));
+      return;
+    }
+    auto directed = fit_directed(candidate.window, *start, params_);
+    if (!directed) return;
+    const bool whole = !is_cut(directed->fit.shape, params_, frame_);
+    PatchShape moved = directed->fit.shape;
+    const auto fit = refine_patch(candidate.window, params_, whole, directed->fit);
+    if (!fit) return;
+    directed->fit = *fit;
+    if (is_patch(*fit, params_, whole)) candidate.fit = directed;
+    if (fit->suspected_motion.norm() == 0.0) return;
+    moved.motion = fit->suspected_motion;
+    moved.blur = std::sqrt(std::max(params_.blur_px * params_.blur_px,
+                                    moved.blur * moved.blur - moved.motion.squaredNorm() / 24.0));
+    try_moved(candidate, moved);
+  }
+
+  /// Of spots that are no patches, with the motion of those that may be.
+  void judge_moved(Candidate& candidate, const Eigen::Vector2d& motion) {
+    try_moved(candidate, moved_start_of(candidate.spot, candidate.chord, motion, params_));
+  }
+
+ private:
+  bool is_moved_patch(const DirectedFit& moved) const {
+    return is_patch(moved.fit, params_, true) && !is_cut(moved.fit.shape, params_, frame_);
+  }
+
+  void try_moved(Candidate& candidate, const std::optional<PatchShape>& start) {
+    if (!start || failures_ >= kMaxFailures) return;
+    const auto moved = fit_moved_directed(candidate.window, *start, params_);
+    const bool is_one = moved && is_moved_patch(*moved);
+    failures_ = is_one ? 0 : failures_ + 1;
+    if (!is_one) return;
+    if (candidate.fit) candidate.fit = moved;
+    candidate.moved = moved;
+  }
+
+  PatchFinderParams params_;
+  Window frame_;
+  int failures_ = 0;  ///< one after the other, of motions that were suspected
+};
+
+int votes_for(const Eigen::Vector2d& motion, const std::vector<Candidate>& candidates) {
+  return static_cast<int>(
+      std::count_if(candidates.begin(), candidates.end(), [&](const Candidate& one) {
+        return one.moved && alike(motion, one.moved->fit.shape.motion);
+      }));
+}
+
+/// The motion that most spots had.
+std::optional<Eigen::Vector2d> common_motion(const std::vector<Candidate>& candidates) {
+  std::optional<Eigen::Vector2d> common;
+  int most = 0;
+  for (const Candidate& one : candidates) {
+    if (!one.moved) continue;
+    const int votes = votes_for(one.moved->fit.shape.motion, candidates);
+    if (votes <= most) continue;
+    most = votes;
+    common = one.moved->fit.shape.motion;
+  }
+  return common;
+}
+
+/// Camera and ceiling move as one: what is a patch only if it moved must have moved as another did.
+void settle_motion(std::vector<Candidate>& candidates, CandidateJudge& judge) {
+  const auto motion = common_motion(candidates);
+  if (!motion) return;
+  for (Candidate& candidate : candidates)
+    if (!candidate.fit && !candidate.moved) judge.judge_moved(candidate, *motion);
+  if (votes_for(*motion, candidates) < 2) return;
+  for (Candidate& candidate : candidates)
+    if (!candidate.fit && candidate.moved && alike(*motion, candidate.moved->fit.shape.motion))
+      candidate.fit = candidate.moved;
+}
+
 }  // namespace
 
 PatchScan PatchFinder::find(const imaging::Frame& frame) const {
-  PatchScan scan;
-  double square = 0.0;
   std::vector<Eigen::Vector3d> spots;  // middle, radius
+  std::vector<Candidate> candidates;
+  CandidateJudge judge(params_, frame.full());
   std::vector<DarkChord> chords = scan_rows(frame, params_);
   for (DarkChord& chord : chords) {
     if (looked_at(spots, chord)) continue;
-    const PatchWindow window = read_window(frame, chord, 1.15 * params_.length_px + 4.0);
-    const DarkSpot spot = dark_spot(window, chord, frame.full());
+    PatchWindow window = read_window(frame, chord, 1.15 * params_.length_px + 4.0);
+    DarkSpot spot = dark_spot(window, chord, frame.full());
     if (spot.area < 0.25 * params_.length_px * params_.width_px) continue;
     spots.emplace_back(spot.mean.x(), spot.mean.y(), 0.6 * params_.length_px);
-    const auto start = start_of(spot, chord, params_, frame.full());
-    const auto directed = start ? fit_directed(window, *start, params_) : std::nullopt;
-    const bool whole = directed && !is_cut(directed->fit.shape, params_, frame.full());
-    const auto fit = directed ? refine_patch(window, params_, whole, directed->fit) : std::nullopt;
-    if (!fit || !is_patch(*fit, params_, whole)) {
+    candidates.push_back({std::move(window), std::move(spot), chord, {}, {}});
+    judge.judge(candidates.back());
+  }
+  settle_motion(candidates, judge);
+  PatchScan scan;
+  double square = 0.0;
+  for (const Candidate& candidate : candidates) {
+    if (!candidate.fit) {
       ++scan.rejected;
       continue;
     }
-    scan.patches.push_back(
-        {fit->shape.uv, fit->shape.angle, fit->covariance, directed->forward_log_odds, !whole});
-    square += fit->noise * fit->noise;
+    const PatchFit& fit = candidate.fit->fit;
+    scan.patches.push_back({fit.shape.uv, fit.shape.angle, fit.covariance,
+                            candidate.fit->forward_log_odds,
+                            is_cut(fit.shape, params_, frame.full())});
+    square += fit.noise * fit.noise;
   }
   if (!scan.patches.empty())
     scan.noise = std::sqrt(square / static_cast<double>(scan.patches.size()));

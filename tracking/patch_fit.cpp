@@ -29,8 +29,9 @@ imaging::Window band_of(const PatchWindow& window, const PatchShape& start,
                         const PatchFinderParams& params) {
   const double c = std::abs(std::cos(start.angle));
   const double s = std::abs(std::sin(start.angle));
-  const double length = 0.5 * params.length_px + kFitBand_px;
-  const double width = 0.5 * params.width_px + kFitBand_px;
+  const double reach = kFitBand_px + 0.5 * start.motion.norm();
+  const double length = 0.5 * params.length_px + reach;
+  const double width = 0.5 * params.width_px + reach;
   const double across = length * c + width * s;
   const double down = length * s + width * c;
   const int u = static_cast<int>(std::floor(start.uv.x() - across));
@@ -46,14 +47,15 @@ std::vector<BandPixel> band_pixels(const PatchWindow& window, const PatchShape& 
   const imaging::Window band = band_of(window, start, params);
   const double c = std::cos(start.angle);
   const double s = std::sin(start.angle);
+  const double reach = kFitBand_px + 0.5 * start.motion.norm();
   std::vector<BandPixel> pixels;
   pixels.reserve(static_cast<std::size_t>(std::max(0, band.width * band.height)));
   for (int v = band.v; v < band.bottom(); ++v) {
     for (int u = band.u; u < band.right(); ++u) {
       const double du = u - start.uv.x();
       const double dv = v - start.uv.y();
-      if (std::abs(c * du + s * dv) > 0.5 * params.length_px + kFitBand_px) continue;
-      if (std::abs(c * dv - s * du) > 0.5 * params.width_px + kFitBand_px) continue;
+      if (std::abs(c * du + s * dv) > 0.5 * params.length_px + reach) continue;
+      if (std::abs(c * dv - s * du) > 0.5 * params.width_px + reach) continue;
       pixels.push_back(
           {static_cast<float>(u), static_cast<float>(v), static_cast<float>(window.at(u, v))});
     }
@@ -73,9 +75,11 @@ PatchSums sum_up(const std::vector<BandPixel>& pixels, const PatchShape& shape,
   const auto ground = static_cast<float>(shape.ground);
   const auto contrast = static_cast<float>(shape.patch - shape.ground);
   const Eigen::Vector2f middle = shape.uv.cast<float>();
-  Eigen::Matrix<float, kFitUnknowns, kFitUnknowns> normal;
+  // One more than there are unknowns: eight are summed up four at a time.
+  constexpr int kPadded = kFitUnknowns + 1;
+  Eigen::Matrix<float, kPadded, kPadded> normal;
   normal.setZero();
-  Eigen::Matrix<float, kFitUnknowns, 1> gradient;
+  Eigen::Matrix<float, kPadded, 1> gradient;
   gradient.setZero();
   PatchSums sums;
   for (const BandPixel& pixel : pixels) {
@@ -84,19 +88,19 @@ PatchSums sum_up(const std::vector<BandPixel>& pixels, const PatchShape& shape,
     const float x = c * du + s * dv;
     const float y = c * dv - s * du;
     const Share share = outline.share(x, y, per_blur);
-    Eigen::Matrix<float, kFitUnknowns, 1> row;
+    Eigen::Matrix<float, kPadded, 1> row;
     row << contrast * (s * share.dy - c * share.dx), contrast * (-s * share.dx - c * share.dy),
         contrast * (y * share.dx - x * share.dy),
-        -contrast * (x * share.dx + y * share.dy + blur * share.dblur), share.value,
-        1.0F - share.value, contrast * share.dblur;
+        -contrast * (x * share.dx + y * share.dy + blur * share.dblur()), share.value,
+        1.0F - share.value, contrast * share.dblur(), 0.0F;
     const float residual = pixel.grey - ground - contrast * share.value;
-    normal.selfadjointView<Eigen::Lower>().rankUpdate(row);
+    normal.noalias() += row * row.transpose();
     gradient += residual * row;
     sums.square += static_cast<double>(residual * residual);
   }
   sums.pixels = static_cast<int>(pixels.size());
-  sums.normal = normal.cast<double>().selfadjointView<Eigen::Lower>();
-  sums.gradient = gradient.cast<double>();
+  sums.normal = normal.topLeftCorner<kFitUnknowns, kFitUnknowns>().cast<double>();
+  sums.gradient = gradient.head<kFitUnknowns>().cast<double>();
   // The priors, in units of the pixels' noise.
   const auto expect = [&](int i, double off, double sigma) {
     const double weight = noise * noise / (sigma * sigma);

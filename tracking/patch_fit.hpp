@@ -39,6 +39,7 @@ struct PatchShape {
   double blur = 0.76;      ///< px
   double gamma = 1.0;      ///< power of the grey values that is linear in light
   PatchLight light;
+  Eigen::Vector2d motion = Eigen::Vector2d::Zero();  ///< while it was exposed, px
 };
 
 constexpr int kFitUnknowns = 7;  ///< u, v, angle, log scale, patch, ground, blur
@@ -54,6 +55,8 @@ struct PatchFit {
   double square = 0.0;  ///< Σ of the squared residuals, priors in it
   double noise = 0.0;   ///< rms of the residuals, with the degrees of freedom taken off
   double misfit = 0.0;  ///< rms of what neighbouring residuals share: no noise, but another shape
+  /// What its edges, blurred more in one direction, suggest of a motion.
+  Eigen::Vector2d suspected_motion = Eigen::Vector2d::Zero();
 };
 
 /// Fits the patch's shape, a body and its tongue with blurred edges under even light, to the grey
@@ -65,9 +68,14 @@ std::optional<PatchFit> fit_patch(const PatchWindow& window, const PatchShape& s
 
 /// States the covariance and the misfit, and fits once more with what even light and a linear
 /// camera leave out, where the grey values show it: the response's power, and light that changes
-/// along the patch. Of a patch that is not @p whole they are left out. Nothing when that goes
-/// astray.
+/// along the patch; a motion is suspected only. Of a patch that is not @p whole all are left out.
+/// Nothing when that goes astray.
 std::optional<PatchFit> refine_patch(const PatchWindow& window, const PatchFinderParams& params,
                                      bool whole, PatchFit fit);
+
+/// The same of a patch that moved while it was exposed, from a start that is near, its motion
+/// included: the mean of its images along it.
+std::optional<PatchFit> fit_moved(const PatchWindow& window, const PatchFinderParams& params,
+                                  const PatchShape& start);
 
 }  // namespace vigia::tracking

@@ -11,10 +11,20 @@ namespace vigia::tracking {
 namespace {
 
 /// Beside the plain fit's unknowns.
-enum LookUnknown { kGamma = kFitUnknowns, kSlopeU, kSlopeV, kGain, kLookUnknowns };
+enum LookUnknown {
+  kGamma = kFitUnknowns,
+  kSlopeU,
+  kSlopeV,
+  kGain,
+  kMotionU,
+  kMotionV,
+  kLookUnknowns
+};
 using LookNormal = Eigen::Matrix<double, kLookUnknowns, kLookUnknowns>;
 using LookVector = Eigen::Matrix<double, kLookUnknowns, 1>;
-using LookRow = Eigen::Matrix<float, kLookUnknowns, 1>;
+/// Padded, so that it is summed up four numbers at a time.
+constexpr int kLookPadded = 16;
+using LookRow = Eigen::Matrix<float, kLookPadded, 1>;
 
 constexpr int kLookSteps = 12;
 constexpr float kPerSlope = 0.1F;  // slopes are stated on 10 px
@@ -22,6 +32,11 @@ constexpr double kGainSigma = 0.5;
 constexpr double kGammaSigma = 3.0;  // before anything is known of it
 constexpr double kMinGamma = 0.4;
 constexpr double kMaxGamma = 3.0;
+constexpr double kMotionSigma_px = 10.0;
+constexpr float kMotionStep = 2.0F;  // of a motion, by the edges' σ, which makes it smooth
+constexpr int kMinMotionSteps = 4;
+constexpr double kMaxMotion_px = 20.0;
+constexpr double kMotionGate = 16.0;
 constexpr double kGammaGate = 4.0;  // χ² of one number, of two: below, it is taken for chance
 constexpr double kSlopeGate = 5.6;
 /// Grey levels that may be cut off: predicted and seen. By the prediction, not by what is seen
@@ -63,6 +78,84 @@ inline MixedGrey mixed_grey(float ground, float patch, float share, float gamma)
                light * log_light / gamma)};
 }
 
+/// The patch's share of a pixel, and its derivatives by what the outline lies like.
+struct OutlineShare {
+  float value = 0.0F;
+  float du = 0.0F;
+  float dv = 0.0F;
+  float dangle = 0.0F;
+  float dscale = 0.0F;
+  float dblur = 0.0F;
+  Eigen::Vector2f dmotion = Eigen::Vector2f::Zero();
+};
+
+/// Of a shape that may have moved while it was exposed.
+class OutlineImage {
+ public:
+  OutlineImage(const PatchFinderParams& params, const PatchShape& shape)
+      : outline_(params, shape.log_scale),
+        c_(static_cast<float>(std::cos(shape.angle))),
+        s_(static_cast<float>(std::sin(shape.angle))),
+        blur_(static_cast<float>(shape.blur)),
+        middle_(shape.uv.cast<float>()),
+        motion_(shape.motion.cast<float>()) {
+    const float length = motion_.norm();
+    if (length > 0.0F)
+      steps_ =
+          std::max(kMinMotionSteps, static_cast<int>(std::ceil(length / (kMotionStep * blur_))));
+  }
+
+  OutlineShare share(const BandPixel& pixel) const {
+    const Eigen::Vector2f off(pixel.u - middle_.x(), pixel.v - middle_.y());
+    OutlineShare all;
+    if (steps_ == 0) {
+      const Share share = add(off, 1.0F, all);
+      // Without motion its derivative is zero; in its place that by a blur that is more along u
+      // than along v, and more along the diagonal.
+      const float per_blur = 1.0F / blur_;
+      const float xx = share.dblur_x * per_blur;
+      const float yy = share.dblur_y * per_blur;
+      const float c2 = c_ * c_ - s_ * s_;
+      const float s2 = 2.0F * c_ * s_;
+      all.dmotion = {0.5F * (c2 * (xx - yy) - 2.0F * s2 * share.dxy),
+                     0.5F * s2 * (xx - yy) + c2 * share.dxy};
+      return all;
+    }
+    const float part = 1.0F / static_cast<float>(steps_);
+    for (int k = 0; k < steps_; ++k) {
+      const float t = (static_cast<float>(k) + 0.5F) * part - 0.5F;
+      const OutlineShare before = all;
+      add(off - t * motion_, part, all);
+      all.dmotion.x() += t * (all.du - before.du);
+      all.dmotion.y() += t * (all.dv - before.dv);
+    }
+    return all;
+  }
+
+ private:
+  Share add(const Eigen::Vector2f& off, float part, OutlineShare& all) const {
+    const float x = c_ * off.x() + s_ * off.y();
+    const float y = c_ * off.y() - s_ * off.x();
+    const Share share = outline_.share(x, y, 1.0F / blur_);
+    const float dblur = share.dblur();
+    all.value += part * share.value;
+    all.du += part * (s_ * share.dy - c_ * share.dx);
+    all.dv -= part * (s_ * share.dx + c_ * share.dy);
+    all.dangle += part * (y * share.dx - x * share.dy);
+    all.dscale -= part * (x * share.dx + y * share.dy + blur_ * dblur);
+    all.dblur += part * dblur;
+    return share;
+  }
+
+  PatchOutline outline_;
+  float c_;
+  float s_;
+  float blur_;
+  Eigen::Vector2f middle_;
+  Eigen::Vector2f motion_;
+  int steps_ = 0;
+};
+
 struct LookSums {
   LookNormal normal = LookNormal::Zero();
   LookVector gradient = LookVector::Zero();
@@ -83,28 +176,20 @@ struct LookSums {
 
 LookSums sum_up_look(const std::vector<BandPixel>& pixels, const PatchShape& shape,
                      const PatchFinderParams& params) {
-  const PatchOutline outline(params, shape.log_scale);
-  const auto c = static_cast<float>(std::cos(shape.angle));
-  const auto s = static_cast<float>(std::sin(shape.angle));
-  const auto blur = static_cast<float>(shape.blur);
+  const OutlineImage outline(params, shape);
   const auto gamma = static_cast<float>(shape.gamma);
-  const Eigen::Vector2f middle = shape.uv.cast<float>();
   const Eigen::Vector2f pivot = shape.light.pivot.cast<float>();
   const Eigen::Vector2f slope = shape.light.slope.cast<float>();
   const auto darker = static_cast<float>(1.0 - shape.patch / shape.ground);
   const float follows = 1.0F - static_cast<float>(shape.light.gain) * darker;
-  Eigen::Matrix<float, kLookUnknowns, kLookUnknowns> normal;
+  Eigen::Matrix<float, kLookPadded, kLookPadded> normal;
   normal.setZero();
   LookRow gradient = LookRow::Zero();
   LookSums sums;
   sums.residuals.reserve(pixels.size());
   sums.rows.reserve(pixels.size());
   for (const BandPixel& pixel : pixels) {
-    const float du = pixel.u - middle.x();
-    const float dv = pixel.v - middle.y();
-    const float x = c * du + s * dv;
-    const float y = c * dv - s * du;
-    const Share share = outline.share(x, y, 1.0F / blur);
+    const OutlineShare share = outline.share(pixel);
     const Eigen::Vector2f off = kPerSlope * (Eigen::Vector2f(pixel.u, pixel.v) - pivot);
     const float change = slope.dot(off);
     const MixedGrey mixed =
@@ -117,18 +202,17 @@ LookSums sum_up_look(const std::vector<BandPixel>& pixels, const PatchShape& sha
     if (saturated) continue;
     const float steep = mixed.dshare;
     const float dslope = mixed.dground + follows * mixed.dpatch;
-    row << steep * (s * share.dy - c * share.dx), steep * (-s * share.dx - c * share.dy),
-        steep * (y * share.dx - x * share.dy),
-        -steep * (x * share.dx + y * share.dy + blur * share.dblur), mixed.dpatch, mixed.dground,
-        steep * share.dblur, mixed.dgamma, dslope * off.x(), dslope * off.y(),
-        -darker * change * mixed.dpatch;
-    normal.selfadjointView<Eigen::Lower>().rankUpdate(row);
+    row.head<kLookUnknowns>() << steep * share.du, steep * share.dv, steep * share.dangle,
+        steep * share.dscale, mixed.dpatch, mixed.dground, steep * share.dblur, mixed.dgamma,
+        dslope * off.x(), dslope * off.y(), -darker * change * mixed.dpatch,
+        steep * share.dmotion.x(), steep * share.dmotion.y();
+    normal.noalias() += row * row.transpose();
     gradient += residual * row;
     sums.square += static_cast<double>(residual * residual);
     ++sums.pixels;
   }
-  sums.normal = normal.cast<double>().selfadjointView<Eigen::Lower>();
-  sums.gradient = gradient.cast<double>();
+  sums.normal = normal.topLeftCorner<kLookUnknowns, kLookUnknowns>().cast<double>();
+  sums.gradient = gradient.head<kLookUnknowns>().cast<double>();
   return sums;
 }
 
@@ -156,6 +240,13 @@ std::vector<double> correlations_of(const std::vector<BandPixel>& pixels,
   return correlations;
 }
 
+/// By how much more the variance of a mean along a row is than that of white residuals.
+double variance_factor(const std::vector<double>& correlations) {
+  double factor = 1.0;
+  for (std::size_t i = 1; i < correlations.size(); ++i) factor += 2.0 * correlations[i];
+  return factor;
+}
+
 /// What each pixel's residual moves u, v and the angle by, on a grid.
 struct InfluenceGrid {
   using Values = Eigen::Array<float, 3, Eigen::Dynamic>;
@@ -178,7 +269,8 @@ struct InfluenceGrid {
     const Eigen::Matrix<float, 3, kLookUnknowns> gain = inverse.topRows<3>().cast<float>();
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       const int row = static_cast<int>(pixels[i].v - v0);
-      values.col(row * width + static_cast<int>(pixels[i].u - u0)) = (gain * rows[i]).array();
+      values.col(row * width + static_cast<int>(pixels[i].u - u0)) =
+          (gain * rows[i].head<kLookUnknowns>()).array();
     }
   }
 
@@ -236,23 +328,43 @@ double prior_variance(const LookVector& estimate, const LookNormal& covariance, 
   return chi_square < gate ? 0.0 : std::max(0.0, excess / count);
 }
 
+/// A motion that blurs as much more along u and along the diagonal; χ² of that below the gate is
+/// chance.
+Eigen::Vector2d motion_of(const LookVector& estimate, const LookNormal& covariance, double gate) {
+  const Eigen::Vector2d more = estimate.segment<2>(kMotionU);
+  const Eigen::Matrix2d chance = covariance.block<2, 2>(kMotionU, kMotionU);
+  if (more.dot(chance.ldlt().solve(more)) < gate) return Eigen::Vector2d::Zero();
+  const double direction = 0.5 * std::atan2(more.y(), more.x());
+  return std::sqrt(24.0 * more.norm()) * Eigen::Vector2d(std::cos(direction), std::sin(direction));
+}
+
 /// Prior variances of what the plain model leaves out; 0 keeps it out.
 struct LookPriors {
   double gamma = 0.0;
   double slope = 0.0;
 
-  /// From the sums at the plain fit.
-  LookPriors(LookSums sums, double noise) {
-    const double variance = noise * noise;
-    sums.expect(kGamma, 0.0, variance / (kGammaSigma * kGammaSigma));
-    const Eigen::LDLT<LookNormal> solver(sums.normal);
-    const LookVector estimate = solver.solve(sums.gradient);
-    const LookNormal covariance = variance * solver.solve(LookNormal::Identity());
-    gamma = prior_variance(estimate, covariance, kGamma, 1, kGammaGate);
-    slope = prior_variance(estimate, covariance, kSlopeU, 2, kSlopeGate);
-  }
   bool any() const { return gamma > 0.0 || slope > 0.0; }
 };
+
+struct LookSuspicion {
+  LookPriors priors;
+  Eigen::Vector2d motion = Eigen::Vector2d::Zero();
+};
+
+/// From the sums at a fit without them.
+LookSuspicion suspect(const std::vector<BandPixel>& pixels, LookSums sums) {
+  const double variance = sums.noise() * sums.noise();
+  const double factor = variance_factor(correlations_of(pixels, sums.residuals));
+  sums.expect(kGamma, 0.0, variance / (kGammaSigma * kGammaSigma));
+  sums.expect(kMotionU, 0.0, variance / (kMotionSigma_px * kMotionSigma_px));
+  sums.expect(kMotionV, 0.0, variance / (kMotionSigma_px * kMotionSigma_px));
+  const Eigen::LDLT<LookNormal> solver(sums.normal);
+  const LookVector estimate = solver.solve(sums.gradient);
+  const LookNormal covariance = variance * solver.solve(LookNormal::Identity());
+  return {{prior_variance(estimate, covariance, kGamma, 1, kGammaGate),
+           prior_variance(estimate, covariance, kSlopeU, 2, kSlopeGate)},
+          motion_of(estimate, covariance, kMotionGate * factor)};
+}
 
 void expect_plain(LookSums& sums, const PatchShape& shape, const PatchFinderParams& params,
                   double noise) {
@@ -263,24 +375,28 @@ void expect_plain(LookSums& sums, const PatchShape& shape, const PatchFinderPara
 }
 
 void expect_look(LookSums& sums, const PatchShape& shape, const LookPriors& priors, double noise) {
+  constexpr double kKeptOut = 1e12;
   const auto weight = [&](double variance) {
-    return variance > 0.0 ? noise * noise / variance : 1e12;
+    return variance > 0.0 ? noise * noise / variance : kKeptOut;
   };
   sums.expect(kGamma, shape.gamma - 1.0, weight(priors.gamma));
   sums.expect(kSlopeU, shape.light.slope.x(), weight(priors.slope));
   sums.expect(kSlopeV, shape.light.slope.y(), weight(priors.slope));
+  const bool moved = shape.motion.norm() > 0.0;
+  const double of_motion = weight(moved ? kMotionSigma_px * kMotionSigma_px : 0.0);
+  for (const int k : {kMotionU, kMotionV})
+    sums.expect(k, moved ? shape.motion[k - kMotionU] : 0.0, of_motion);
 }
 
-void state_covariance(const std::vector<BandPixel>& pixels, const LookSums& sums,
-                      const LookNormal& inverse, double noise, PatchFit& fit) {
+void state_covariance(const std::vector<BandPixel>& pixels, const LookSums& sums, PatchFit& fit) {
+  const LookNormal inverse = sums.normal.ldlt().solve(LookNormal::Identity());
+  const double noise = sums.noise();
   fit.noise = noise;
   fit.misfit = 0.0;
   Eigen::Matrix3d covariance = inverse.topLeftCorner<3, 3>();
   const std::vector<double> correlations = correlations_of(pixels, sums.residuals);
   if (correlations.size() > 1) {
-    double factor = 1.0;
-    for (std::size_t i = 1; i < correlations.size(); ++i) factor += 2.0 * correlations[i];
-    fit.misfit = noise * std::sqrt(1.0 - 1.0 / factor);
+    fit.misfit = noise * std::sqrt(1.0 - 1.0 / variance_factor(correlations));
     const InfluenceGrid influence(pixels, sums.rows, inverse);
     covariance += shared_covariance(influence, correlations) - shared_covariance(influence, {1.0});
   }
@@ -294,8 +410,30 @@ bool step_look(PatchShape& shape, const LookVector& step) {
   shape.gamma = std::clamp(gamma + std::clamp(step[kGamma], -0.7, 0.7), kMinGamma, kMaxGamma);
   shape.light.slope += step.segment<2>(kSlopeU);
   shape.light.gain += step[kGain];
+  if (shape.motion.norm() > 0.0)
+    shape.motion += step.segment<2>(kMotionU).cwiseMax(-3.0).cwiseMin(3.0);
   return step.head<2>().norm() < 2e-3 && std::abs(step[2]) < 2e-4 &&
-         std::abs(shape.gamma - gamma) < 0.02 && step.segment<2>(kSlopeU).norm() < 0.1;
+         std::abs(shape.gamma - gamma) < 0.02 && step.segment<2>(kSlopeU).norm() < 0.1 &&
+         (shape.motion.norm() == 0.0 || step.segment<2>(kMotionU).norm() < 0.02);
+}
+
+/// Moves the shape until it rests: the sums there. Where ever other pixels saturate, it hardly
+/// moves any more, but does not rest.
+std::optional<LookSums> settle(const std::vector<BandPixel>& pixels,
+                               const PatchFinderParams& params, const LookPriors& priors,
+                               PatchShape& shape) {
+  if (pixels.size() < 4 * kLookUnknowns) return std::nullopt;
+  bool at_rest = false;
+  for (int i = 0;; ++i) {
+    LookSums sums = sum_up_look(pixels, shape, params);
+    expect_plain(sums, shape, params, sums.noise());
+    const double noise = sums.noise();
+    expect_look(sums, shape, priors, noise);
+    if (at_rest || i == kLookSteps) return sums;
+    const LookVector step = sums.normal.ldlt().solve(sums.gradient);
+    if (!step.allFinite()) return std::nullopt;
+    at_rest = step_look(shape, step);
+  }
 }
 
 }  // namespace
@@ -305,27 +443,38 @@ std::optional<PatchFit> refine_patch(const PatchWindow& window, const PatchFinde
   const std::vector<BandPixel> pixels = band_pixels(window, fit.shape, params);
   if (pixels.size() < 4 * kFitUnknowns) return std::nullopt;
   fit.shape.light.pivot = fit.shape.uv;
-  std::optional<LookPriors> priors;
-  bool at_rest = false;
-  for (int i = 0; i < kLookSteps; ++i) {
-    LookSums sums = sum_up_look(pixels, fit.shape, params);
-    expect_plain(sums, fit.shape, params, sums.noise());
-    const double noise = sums.noise();
-    if (!priors) priors.emplace(sums, noise);
-    if (!whole) priors->gamma = priors->slope = 0.0;
-    expect_look(sums, fit.shape, *priors, noise);
-    const Eigen::LDLT<LookNormal> solver(sums.normal);
-    // Where ever other pixels saturate, it hardly moves any more, but does not rest.
-    if (at_rest || !priors->any() || i == kLookSteps - 1) {
-      state_covariance(pixels, sums, solver.solve(LookNormal::Identity()), noise, fit);
-      fit.shape.angle = wrap_angle(fit.shape.angle);
-      return fit;
-    }
-    const LookVector step = solver.solve(sums.gradient);
-    if (!step.allFinite()) return std::nullopt;
-    at_rest = step_look(fit.shape, step);
+  std::optional<LookSums> sums = sum_up_look(pixels, fit.shape, params);
+  expect_plain(*sums, fit.shape, params, sums->noise());
+  const LookSuspicion suspicion = suspect(pixels, *sums);
+  if (whole) fit.suspected_motion = suspicion.motion;
+  if (whole && suspicion.priors.any()) {
+    sums = settle(pixels, params, suspicion.priors, fit.shape);
+    if (!sums) return std::nullopt;
+  } else {
+    expect_look(*sums, fit.shape, {}, sums->noise());
   }
-  return std::nullopt;
+  state_covariance(pixels, *sums, fit);
+  fit.shape.angle = wrap_angle(fit.shape.angle);
+  return fit;
+}
+
+std::optional<PatchFit> fit_moved(const PatchWindow& window, const PatchFinderParams& params,
+                                  const PatchShape& start) {
+  PatchFit fit;
+  fit.shape = start;
+  fit.shape.light.pivot = start.uv;
+  if (!settle(band_pixels(window, fit.shape, params), params, {}, fit.shape)) return std::nullopt;
+  if (fit.shape.motion.norm() > kMaxMotion_px) return std::nullopt;
+  const std::vector<BandPixel> pixels = band_pixels(window, fit.shape, params);
+  LookSums before = sum_up_look(pixels, fit.shape, params);
+  expect_plain(before, fit.shape, params, before.noise());
+  const LookPriors priors = suspect(pixels, before).priors;
+  const auto sums = settle(pixels, params, priors, fit.shape);
+  if (!sums) return std::nullopt;
+  fit.square = sums->square;
+  state_covariance(pixels, *sums, fit);
+  fit.shape.angle = wrap_angle(fit.shape.angle);
+  return fit;
 }
 
 }  // namespace vigia::tracking

@@ -14,7 +14,11 @@ struct Share {
   float value = 0.0F;
   float dx = 0.0F;
   float dy = 0.0F;
-  float dblur = 0.0F;
+  float dblur_x = 0.0F;  ///< by the blur along x, along y
+  float dblur_y = 0.0F;
+  float dxy = 0.0F;
+
+  float dblur() const { return dblur_x + dblur_y; }
 };
 
 /// Φ(t/s) at an edge, and what it adds to the derivatives.
@@ -39,7 +43,9 @@ inline void add_rectangle(const EdgeSide& low, const EdgeSide& high, const EdgeS
   share.value += along * across;
   share.dx += (low.density - high.density) * across;
   share.dy += along * (below.density - above.density);
-  share.dblur += (low.blur - high.blur) * across + along * (below.blur - above.blur);
+  share.dblur_x += (low.blur - high.blur) * across;
+  share.dblur_y += along * (below.blur - above.blur);
+  share.dxy += (low.density - high.density) * (below.density - above.density);
 }
 
 /// The patch's outline for one size, px.
@@ -82,7 +88,8 @@ struct BandPixel {
   float grey;
 };
 
-/// The pixels about a patch: they stay the same while the shape moves.
+/// The pixels about a patch and as far as its motion smears it: they stay the same while the shape
+/// moves.
 std::vector<BandPixel> band_pixels(const PatchWindow& window, const PatchShape& start,
                                    const PatchFinderParams& params);
 

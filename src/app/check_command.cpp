@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "vigia/core/field_map.hpp"
 #include "vigia/evaluation/campaign.hpp"
 #include "vigia/mission/setup.hpp"
 #include "vigia/planner/fuzzy_engine.hpp"
@@ -37,6 +38,14 @@ std::string check_world(const std::shared_ptr<ConfigNode>& root) {
   reader.finish();
   return fmt::format("\"{}\", with {}", world.name,
                      count_of(world.landmarks.all().size(), "landmark"));
+}
+
+std::string check_field(const std::shared_ptr<ConfigNode>& root) {
+  MapReader reader(root, "field");
+  const FieldMap field = read_field_map(reader.map("field"));
+  reader.finish();
+  return fmt::format("{:g} × {:g} m, with {}", field.length_m, field.width_m,
+                     count_of(field.lines.size(), "line"));
 }
 
 std::string check_robot(const std::shared_ptr<ConfigNode>& root) {
@@ -67,7 +76,7 @@ std::string check_rules(const std::string& file) {
   return fmt::format("with {}", count_of(engine.input_names().size(), "input"));
 }
 
-enum class FileKind { mission, world, robot, campaign, rules };
+enum class FileKind { mission, world, field, robot, campaign, rules };
 
 std::string_view to_string(FileKind kind) {
   switch (kind) {
@@ -75,6 +84,8 @@ std::string_view to_string(FileKind kind) {
       return "mission";
     case FileKind::world:
       return "world";
+    case FileKind::field:
+      return "field";
     case FileKind::robot:
       return "robot";
     case FileKind::campaign:
@@ -86,7 +97,8 @@ std::string_view to_string(FileKind kind) {
 }
 
 /// The kind of a YAML file shows in its keys: a campaign names a mission, a mission has a route, a
-/// world a room, a robot a base.
+/// world a room, a field nothing
+/// else, a robot a base.
 FileKind kind_of(const ConfigNode& root) {
   const auto has_one_of = [&root](const std::vector<std::string>& keys) {
     return std::any_of(keys.begin(), keys.end(),
@@ -95,6 +107,7 @@ FileKind kind_of(const ConfigNode& root) {
   if (has_one_of({"mission", "seeds", "variants"})) return FileKind::campaign;
   if (has_one_of({"route", "start", "world"})) return FileKind::mission;
   if (has_one_of({"room", "landmarks"})) return FileKind::world;
+  if (has_one_of({"field"})) return FileKind::field;
   if (has_one_of({"head", "base", "camera", "zoom", "cameras", "range_ring"}))
     return FileKind::robot;
   return FileKind::mission;
@@ -107,6 +120,8 @@ std::string check_kind(FileKind kind, const std::shared_ptr<ConfigNode>& root,
       return check_mission(options);
     case FileKind::world:
       return check_world(root);
+    case FileKind::field:
+      return check_field(root);
     case FileKind::robot:
       return check_robot(root);
     case FileKind::campaign:
@@ -133,8 +148,8 @@ int check(const CheckOptions& options) {
 
 void add_check(CLI::App& app, int& status) {
   auto options = std::make_shared<CheckOptions>();
-  CLI::App* command =
-      app.add_subcommand("check", "Validate a mission, world, robot, campaign or fuzzy rule base");
+  CLI::App* command = app.add_subcommand(
+      "check", "Validate a mission, world, field, robot, campaign or fuzzy rule base");
   command->add_option("file", options->file, "YAML or .fll file")->required();
   command->add_option("--set", options->overrides, "Override a key of a mission")
       ->type_name("KEY=VALUE")

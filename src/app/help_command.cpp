@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <memory>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -51,11 +52,19 @@ std::vector<KeyRow> all_keys() {
   return rows;
 }
 
-/// The rest of a key behind a map's path; empty for a key that lies elsewhere.
+/// The rest of a key behind the path of a map or a list; empty for a key that lies elsewhere.
 std::string rest_of(const std::string& key, const std::string& path) {
   if (path.empty()) return key;
   if (key.size() <= path.size() + 1 || key.compare(0, path.size(), path) != 0) return "";
-  return key[path.size()] == '.' ? key.substr(path.size() + 1) : "";
+  const std::size_t item = key.compare(path.size(), 2, "[]") == 0 ? 2 : 0;
+  const std::size_t dot = path.size() + item;
+  return dot < key.size() && key[dot] == '.' ? key.substr(dot + 1) : "";
+}
+
+/// A path as the reference writes it: of an item of a list, cameras[0], what all have.
+std::string without_places(const std::string& path) {
+  static const std::regex place("\\[[0-9]+\\]");
+  return std::regex_replace(path, place, "[]");
 }
 
 /// The keys at or below a path; @p flat: not those of the maps below it.
@@ -97,7 +106,8 @@ nlohmann::ordered_json json_of(const KeyRow& row) {
 }
 
 void print_keys(const HelpOptions& options) {
-  const std::vector<KeyRow> keys = keys_below(options.prefix, options.flat);
+  const std::string prefix = without_places(options.prefix);
+  const std::vector<KeyRow> keys = keys_below(prefix, options.flat);
   if (options.form() == Form::json) {
     auto list = nlohmann::ordered_json::array();
     std::transform(keys.begin(), keys.end(), std::back_inserter(list), json_of);
@@ -107,7 +117,7 @@ void print_keys(const HelpOptions& options) {
   const bool markdown = options.form() == Form::markdown;
   TextRows rows{{"key", "default", "values", "meaning"}};
   for (const KeyRow& row : keys) {
-    const std::string rest = rest_of(row.key, options.prefix);
+    const std::string rest = rest_of(row.key, prefix);
     // Below its heading in a page a map needs no row of its own.
     if (markdown && rest.empty() && keys.size() > 1) continue;
     rows.push_back({markdown ? "`" + (rest.empty() ? row.key : rest) + "`" : row.key, usual_of(row),

@@ -1,6 +1,7 @@
 #include "commands.hpp"
 #include "usage_mistake.hpp"
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 
@@ -21,6 +22,12 @@ void log_to_stderr() {
   auto logger = spdlog::stderr_color_mt("vigia");
   logger->set_pattern("%^%l%$: %v");
   spdlog::set_default_logger(logger);
+}
+
+/// A file that grows beyond the limit of the process is an error of the write, as a full disk is,
+/// and what was begun is removed.
+void take_size_limits_for_errors() {
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 int run_program(int argc, char** argv) {
@@ -63,6 +70,7 @@ int run_program(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  take_size_limits_for_errors();
   try {
     return run_program(argc, argv);
   } catch (...) {

@@ -3,6 +3,8 @@
 #include "config_parser.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <sstream>
 
 namespace vigia {
 namespace {
@@ -102,15 +104,42 @@ NodePtr resolve(const std::string& text, const std::string& name,
   return extends ? extend(root, *extends, name, chain) : root;
 }
 
-std::vector<std::string> split_path(const std::string& path) {
-  std::vector<std::string> keys(1);
-  for (const char c : path) {
-    if (c == '.')
-      keys.emplace_back();
-    else
-      keys.back() += c;
+/// A key of a path and the places, from 0, in the lists that follow it: cameras[0].
+struct PathStep {
+  std::string key;
+  std::vector<std::size_t> places;
+};
+
+/// The places behind a key, "[0][1]"; nothing where it is written otherwise.
+std::optional<std::vector<std::size_t>> places_of(const std::string& text) {
+  constexpr std::size_t kDigits = 6;
+  std::vector<std::size_t> places;
+  for (std::size_t open = 0; open < text.size();) {
+    const std::size_t close = text.find(']', open);
+    if (text[open] != '[' || close == std::string::npos) return std::nullopt;
+    const std::string digits = text.substr(open + 1, close - open - 1);
+    if (digits.empty() || digits.size() > kDigits ||
+        digits.find_first_not_of("0123456789") != std::string::npos)
+      return std::nullopt;
+    places.push_back(std::stoul(digits));
+    open = close + 1;
   }
-  return keys;
+  return places;
+}
+
+std::vector<PathStep> split_path(const std::string& path, const SourceLocation& where) {
+  std::vector<PathStep> steps;
+  std::istringstream parts(path + ".");
+  for (std::string part; std::getline(parts, part, '.');) {
+    const std::size_t open = std::min(part.find('['), part.size());
+    const auto places = places_of(part.substr(open));
+    if (!places)
+      throw InputError(where, "a place in a list is written key[0], counted from 0, found " +
+                                  quoted_for_message(part));
+    if (open == 0) throw InputError(where, "the key must be names joined by single dots");
+    steps.push_back({part.substr(0, open), *places});
+  }
+  return steps;
 }
 
 bool names_a_file(const ConfigNode& node) {
@@ -118,24 +147,94 @@ bool names_a_file(const ConfigNode& node) {
   return node.kind == ConfigNode::Kind::scalar && (ending == ".yaml" || ending == ".yml");
 }
 
-/// The map at a key, for a path that goes on below it: made when it is absent, and loaded when the
-/// value is the name of a file.
-ConfigNode& step_into(ConfigNode& parent, const std::string& key, const SourceLocation& where) {
-  for (auto& [name, value] : parent.entries)
-    if (name == key && names_a_file(*value)) value = load_named_config(*value);
-  ConfigNode* child = parent.find(key);
-  if (child == nullptr) {
+[[noreturn]] void throw_other_kind(const ConfigNode& node, const std::string& name,
+                                   const std::string& wanted, const SourceLocation& where) {
+  const char* const found = node.kind == ConfigNode::Kind::list  ? "a list"
+                            : node.kind == ConfigNode::Kind::map ? "a map"
+                                                                 : "a value";
+  throw InputError(where, quoted_for_message(name) + " is " + found + " (" + to_string(node.where) +
+                              "), not " + wanted);
+}
+
+/// Checks that there is such a place; @p name: of the list in messages.
+void require_place(const ConfigNode& list, std::size_t place, const std::string& name,
+                   const SourceLocation& where) {
+  if (list.kind != ConfigNode::Kind::list) throw_other_kind(list, name, "a list", where);
+  const std::size_t count = list.items.size();
+  if (place < count) return;
+  throw InputError(where, quoted_for_message(name) + " has " + std::to_string(count) +
+                              (count == 1 ? " item" : " items") + " (" + to_string(list.where) +
+                              "), counted from 0: there is no [" + std::to_string(place) + "]");
+}
+
+/// The value at a key, loaded when it is the name of a file; nullptr when there is none.
+NodePtr* value_at(ConfigNode& map, const std::string& key) {
+  for (auto& [name, value] : map.entries) {
+    if (name != key) continue;
+    if (names_a_file(*value)) value = load_named_config(*value);
+    return &value;
+  }
+  return nullptr;
+}
+
+/// The list that the last of a step's places is in.
+ConfigNode& list_of(ConfigNode& map, const PathStep& step, const SourceLocation& where) {
+  NodePtr* at = value_at(map, step.key);
+  if (at == nullptr) throw InputError(where, "there is no list " + quoted_for_message(step.key));
+  for (std::size_t k = 0; k < step.places.size(); ++k) {
+    require_place(**at, step.places[k], step.key, where);
+    if (k + 1 == step.places.size()) break;
+    at = &(*at)->items[step.places[k]];
+  }
+  return **at;
+}
+
+/// The map at a step, for a path that goes on below it: made when the key is absent, and loaded
+/// when the value is the name of a file.
+ConfigNode& step_into(ConfigNode& parent, const PathStep& step, const SourceLocation& where) {
+  ConfigNode* child = nullptr;
+  if (!step.places.empty()) {
+    NodePtr& item = list_of(parent, step, where).items[step.places.back()];
+    if (names_a_file(*item)) item = load_named_config(*item);
+    child = item.get();
+  } else if (NodePtr* value = value_at(parent, step.key)) {
+    child = value->get();
+  } else {
     auto made = std::make_shared<ConfigNode>();
     made->where = made->key_where = where;
-    parent.entries.emplace_back(key, made);
+    parent.entries.emplace_back(step.key, made);
     child = made.get();
   }
   if (child->kind == ConfigNode::Kind::null) child->kind = ConfigNode::Kind::map;
   if (child->kind != ConfigNode::Kind::map)
-    throw InputError(where, quoted_for_message(key) + " is " +
-                                (child->kind == ConfigNode::Kind::list ? "a list" : "a value") +
-                                " (" + to_string(child->where) + "), not a map with keys");
+    throw_other_kind(*child, step.key, "a map with keys", where);
   return *child;
+}
+
+/// Puts the value into the list, or takes the item out.
+void set_item(ConfigNode& map, const PathStep& step, const NodePtr& value,
+              const SourceLocation& where) {
+  auto& items = list_of(map, step, where).items;
+  const auto item = items.begin() + static_cast<std::ptrdiff_t>(step.places.back());
+  if (value->kind == ConfigNode::Kind::null)
+    items.erase(item);
+  else
+    *item = value;
+}
+
+void set_entry(ConfigNode& map, const std::string& key, const NodePtr& value,
+               const SourceLocation& where) {
+  const auto entry = std::find_if(map.entries.begin(), map.entries.end(),
+                                  [&](const auto& e) { return e.first == key; });
+  if (value->kind == ConfigNode::Kind::null) {
+    if (entry == map.entries.end())
+      throw InputError(where, quoted_for_message(key) + " is not there to be removed");
+    map.entries.erase(entry);
+  } else if (entry != map.entries.end()) {
+    entry->second = value;
+  } else {
+    map.entries.emplace_back(key, value);
+  }
 }
 
 }  // namespace
@@ -175,27 +274,19 @@ void set_config(ConfigNode& root, const std::string& assignment) {
   const SourceLocation where{"--set " + assignment, 0, 0};
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos) throw InputError(where, "must read key=value");
-  const auto keys = split_path(assignment.substr(0, equals));
-  if (std::find(keys.begin(), keys.end(), "") != keys.end())
-    throw InputError(where, "the key must be names joined by single dots");
-  if (keys.size() == 1 && (keys.front() == "version" || keys.front() == "extends"))
-    throw InputError(where, "'" + keys.front() + "' belongs to a file and cannot be set");
+  const auto steps = split_path(assignment.substr(0, equals), where);
+  const PathStep& last = steps.back();
+  if (steps.size() == 1 && (last.key == "version" || last.key == "extends"))
+    throw InputError(where, "'" + last.key + "' belongs to a file and cannot be set");
   const NodePtr value = parse_yaml(assignment.substr(equals + 1), where, true);
   value->key_where = where;
 
   ConfigNode* map = &root;
-  for (std::size_t i = 0; i + 1 < keys.size(); ++i) map = &step_into(*map, keys[i], where);
-  const auto entry = std::find_if(map->entries.begin(), map->entries.end(),
-                                  [&](const auto& e) { return e.first == keys.back(); });
-  if (value->kind == ConfigNode::Kind::null) {
-    if (entry == map->entries.end())
-      throw InputError(where, quoted_for_message(keys.back()) + " is not there to be removed");
-    map->entries.erase(entry);
-  } else if (entry != map->entries.end()) {
-    entry->second = value;
-  } else {
-    map->entries.emplace_back(keys.back(), value);
-  }
+  for (std::size_t i = 0; i + 1 < steps.size(); ++i) map = &step_into(*map, steps[i], where);
+  if (last.places.empty())
+    set_entry(*map, last.key, value, where);
+  else
+    set_item(*map, last, value, where);
 }
 
 }  // namespace vigia

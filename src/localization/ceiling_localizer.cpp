@@ -10,8 +10,6 @@
 namespace vigia::localization {
 namespace {
 
-constexpr double kCeilingHistory_s = 1.0;
-
 UpdateStatus status_of(CeilingUpdate update, const Belief& belief) {
   switch (update) {
     case CeilingUpdate::none_seen:
@@ -35,7 +33,7 @@ void CeilingLocalizer::reset(Stamp stamp, const std::optional<Prior>& prior) {
 
 void CeilingLocalizer::predict(const OdometryIncrement& increment) {
   steps_.push_back({filter_, increment});
-  const Stamp oldest = increment.to - Duration::from_seconds(kCeilingHistory_s);
+  const Stamp oldest = increment.to - history();
   while (steps_.front().increment.to < oldest) steps_.pop_front();
   filter_.predict(increment);
   refresh_belief();

@@ -7,8 +7,6 @@
 namespace vigia::localization {
 namespace {
 
-constexpr double kRemembered_s = 1.0;
-
 /// A method of localization on fields, with the model that it refers to.
 template <typename Method>
 class FieldLocalizerOf final : public FieldLocalizer {
@@ -55,7 +53,7 @@ void FieldLocalizer::reset(Stamp stamp, const std::optional<Prior>& prior) {
 
 void FieldLocalizer::predict(const OdometryIncrement& increment) {
   places_.push_back({increment.to, move(places_.back().oMr, increment)});
-  const Stamp oldest = increment.to - Duration::from_seconds(kRemembered_s);
+  const Stamp oldest = increment.to - history();
   while (places_.front().stamp < oldest) places_.pop_front();
   move_by(increment);
   if (calibration_) calibration_->predict(increment);

@@ -6,11 +6,6 @@
 #include "vigia/localization/motion_fusion.hpp"
 
 namespace vigia::localization {
-namespace {
-
-constexpr double kFlowWait_s = 0.5;  // for a flow, at most
-
-}  // namespace
 
 std::optional<OdometryIncrement> joined_with_flow(const std::vector<OdometryIncrement>& parts,
                                                   const ImageShift& shift,
@@ -45,7 +40,7 @@ void FlowFedLocalizer::reset(Stamp stamp, const std::optional<Prior>& prior) {
 
 void FlowFedLocalizer::predict(const OdometryIncrement& increment) {
   waiting_.push_back(increment);
-  pass_until(increment.to - Duration::from_seconds(kFlowWait_s));
+  pass_until(increment.to - longest_wait());
   refresh_belief();
 }
 

@@ -7,12 +7,6 @@
 #include "vigia/localization/travelled.hpp"
 
 namespace vigia::localization {
-namespace {
-
-constexpr double kMlHistory_s = 1.0;
-
-}  // namespace
-
 MlFixLocalizer::MlFixLocalizer(FieldMap field, const MlFixParams& params)
     : field_(std::move(field)), params_(params), filter_(field_, params.filter) {
   reset({}, std::nullopt);
@@ -35,7 +29,7 @@ void MlFixLocalizer::predict(const OdometryIncrement& increment) {
   stamp_ = increment.to;
   if (found_) {
     steps_.push_back({filter_, increment});
-    const Stamp oldest = increment.to - Duration::from_seconds(kMlHistory_s);
+    const Stamp oldest = increment.to - history();
     while (steps_.front().increment.to < oldest) steps_.pop_front();
   } else {
     travel(since_, increment, params_.filter.odometry);

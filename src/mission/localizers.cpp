@@ -14,6 +14,7 @@
 #include "vigia/localization/odometry_localizer.hpp"
 #include "vigia/localization/pattern_fix.hpp"
 #include "vigia/localization/running_fix_localizer.hpp"
+#include "vigia/mission/delays.hpp"
 
 namespace vigia::mission {
 namespace {
@@ -127,6 +128,35 @@ LocalizerPtr make_bearing_only(const MissionSetup& setup, std::uint64_t /*seed*/
       setup.world.landmarks, setup.on_ground(), setup.bearing_only, setup.world.plan);
 }
 
+Duration no_history(const MissionSetup& /*setup*/) {
+  return {};
+}
+
+Duration ekf_history(const MissionSetup& setup) {
+  return Duration::from_seconds(setup.ekf.history_s);
+}
+
+Duration bearing_only_history(const MissionSetup& setup) {
+  return Duration::from_seconds(setup.bearing_only.history_s);
+}
+
+Duration pattern_fix_history(const MissionSetup& setup) {
+  return Duration::from_seconds(pattern_fix_params(setup).history_s);
+}
+
+Duration field_history(const MissionSetup& /*setup*/) {
+  return localization::FieldLocalizer::history();
+}
+
+Duration ceiling_history(const MissionSetup& /*setup*/) {
+  return localization::CeilingLocalizer::history();
+}
+
+/// Until it knows where it is, it takes none that is late.
+Duration ml_fix_history(const MissionSetup& setup) {
+  return setup.prior ? localization::MlFixLocalizer::history() : Duration{};
+}
+
 }  // namespace
 
 const std::vector<LocalizerEntry>& localizers() {
@@ -136,23 +166,27 @@ const std::vector<LocalizerEntry>& localizers() {
        true,
        FirstPose::recovery,
        &sees_landmarks,
-       &make_ekf},
+       &make_ekf,
+       {"landmark", &ekf_history, "localization.ekf.history_s"}},
       {{"odometry", "dead reckoning alone", "nothing"},
        true,
        FirstPose::prior,
        &anywhere,
-       &make_odometry},
+       &make_odometry,
+       {"", &no_history, ""}},
       {{"pattern_fix", "pose from one view of a colour pattern (QUIXOTE)",
         "colour patterns in the world"},
        true,
        FirstPose::itself,
        &has_patterns,
-       &make_pattern_fix},
+       &make_pattern_fix,
+       {"landmark", &pattern_fix_history, ""}},
       {{"bearing_only", "directions to landmarks alone", "landmarks, and a camera that finds them"},
        false,
        FirstPose::looks,
        &sees_landmarks,
-       &make_bearing_only},
+       &make_bearing_only,
+       {"landmark", &bearing_only_history, "localization.bearing_only.history_s"}},
       {{"field_grid",
         "refined matches of a mirror camera's scans with a field's lines, followed in time as "
         "weighted hypotheses (after Minho)",
@@ -160,27 +194,31 @@ const std::vector<LocalizerEntry>& localizers() {
        true,
        FirstPose::itself,
        &has_field,
-       &make_field_grid},
+       &make_field_grid,
+       {"field", &field_history, ""}},
       {{"mcl", "Monte Carlo localization on a field's lines, goals and posts",
         "a field in the world, and a camera that scans it"},
        false,
        FirstPose::itself,
        &has_field,
-       &make_mcl},
+       &make_mcl,
+       {"field", &field_history, ""}},
       {{"murea",
         "MUREA, evidence accumulated in cells of poses that are divided further and further",
         "a field in the world, and a camera that scans it"},
        false,
        FirstPose::itself,
        &has_field,
-       &make_murea},
+       &make_murea,
+       {"field", &field_history, ""}},
       {{"ceiling",
         "all patches of a ceiling in sight, jointly; which cell it is by motion (Chonbuk)",
         "a ceiling in the world and a fixed camera that looks up"},
        true,
        FirstPose::prior,
        &has_ceiling,
-       &make_ceiling},
+       &make_ceiling,
+       {"ceiling", &ceiling_history, ""}},
       {{"running_fix",
         "a goal's corner ranged from two points of the way: two circles, the heading by odometry "
         "(Bais)",
@@ -188,7 +226,8 @@ const std::vector<LocalizerEntry>& localizers() {
        true,
        FirstPose::prior,
        &has_corners,
-       &make_running_fix},
+       &make_running_fix,
+       {"stereo", &no_history, ""}},
       {{"ml_fix",
         "range and bearing of goals' corners by maximum likelihood, the errors of the pair's "
         "calibration as states (after Bais)",
@@ -196,7 +235,8 @@ const std::vector<LocalizerEntry>& localizers() {
        true,
        FirstPose::itself,
        &has_corners,
-       &make_ml_fix},
+       &make_ml_fix,
+       {"stereo", &ml_fix_history, ""}},
   };
   return table;
 }
@@ -236,10 +276,12 @@ std::optional<localization::CornerFilterParams> corner_filter_params(const Missi
 }
 
 std::vector<std::string> usual_localizers(const MissionSetup& setup) {
+  const bool punctual = longest_delay(setup).ns == 0;
   std::vector<std::string> names;
   for (const LocalizerEntry& entry : localizers()) {
     const bool starts = setup.prior || !needs_prior(entry, setup);
-    if (entry.usual && starts && entry.fits(setup)) names.push_back(entry.name);
+    const bool in_time = entry.late.eye.empty() || punctual || entry.late.history(setup).ns > 0;
+    if (entry.usual && starts && in_time && entry.fits(setup)) names.push_back(entry.name);
   }
   return names;
 }

@@ -1,5 +1,6 @@
 #include "ptz_attention.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <set>
@@ -33,18 +34,33 @@ EventKind event_of(servo::GazeEvent event) {
   return EventKind::expired;
 }
 
+/// In whole ticks, beyond the first: in that one every camera exposes.
+double pause_between_images_s(const Camera& camera, double tick_s) {
+  constexpr double kRounding = 1e-9;
+  return std::max(0.0, std::ceil(camera.period_s / tick_s - kRounding) - 1.0) * tick_s;
+}
+
+/// The params are those of a camera that exposes in every tick and delivers at once.
+servo::GazeParams with_patience(servo::GazeParams params, double pause_s, double latency_s) {
+  params.lost_grace_s += pause_s;
+  params.acquire_s += pause_s + latency_s;
+  return params;
+}
+
 }  // namespace
 
-PtzAttention::PtzAttention(const MissionSetup& setup, CameraId camera, std::uint64_t seed,
+PtzAttention::PtzAttention(const MissionSetup& setup, const Camera& camera, std::uint64_t seed,
                            EventLog& log)
     : setup_(setup),
-      camera_(camera),
+      camera_(camera.id),
       log_(log),
       on_ground_(setup.on_ground()),
+      pause_s_(pause_between_images_s(camera, setup.tick_s)),
+      latency_s_(camera.latency_s),
       information_(landmark_information(setup)),
       scheduler_(setup, information_, seed),
-      gaze_(setup.robot.robot.head, setup.robot.robot.head_limits, setup.robot.zoom(), setup.gaze,
-            setup.world.ground),
+      gaze_(setup.robot.robot.head, setup.robot.robot.head_limits, setup.robot.zoom(),
+            with_patience(setup.gaze, pause_s_, latency_s_), setup.world.ground),
       base_motion_({setup.robot.robot.base, setup.tick_s}) {}
 
 void PtzAttention::follow(const Path& path) {
@@ -193,7 +209,8 @@ bool PtzAttention::overdue(Stamp now) {
     aimed_since_.reset();
   else if (!aimed_since_)
     aimed_since_ = now;
-  return aimed_since_ && (now - *aimed_since_).seconds() > kSeenWithin_s;
+  const double within_s = kSeenWithin_s + pause_s_ + latency_s_;
+  return aimed_since_ && (now - *aimed_since_).seconds() > within_s;
 }
 
 /// The events of the two limits: limit_1, stop, restart.

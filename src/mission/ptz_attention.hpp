@@ -20,7 +20,7 @@ namespace vigia::mission {
 class PtzAttention : public Attention {
  public:
   /// @p camera: which the head turns. All references outlive the attention.
-  PtzAttention(const MissionSetup& setup, CameraId camera, std::uint64_t seed, EventLog& log);
+  PtzAttention(const MissionSetup& setup, const Camera& camera, std::uint64_t seed, EventLog& log);
 
   void follow(const Path& path) override;
   std::optional<GazeRequest> request() const override;
@@ -70,6 +70,8 @@ class PtzAttention : public Attention {
   CameraId camera_;
   EventLog& log_;
   RigOnGround on_ground_;
+  double pause_s_;    ///< between two images beyond a tick, in which nothing new is seen
+  double latency_s_;  ///< of the camera
   localization::LandmarkInformation information_;
   LookScheduler scheduler_;
   servo::GazeController gaze_;

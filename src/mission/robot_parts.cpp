@@ -45,7 +45,7 @@ std::unique_ptr<Attention> make_attention(const MissionSetup& setup, const Rig& 
                                           std::uint64_t seed, EventLog& log) {
   const Camera* directed = directed_camera(rig);
   if (directed == nullptr) return std::make_unique<NoAttention>();
-  return std::make_unique<PtzAttention>(setup, directed->id, seed, log);
+  return std::make_unique<PtzAttention>(setup, *directed, seed, log);
 }
 
 std::unique_ptr<Recovery> make_recovery(const MissionSetup& setup, const Rig& rig,

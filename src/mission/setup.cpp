@@ -1,14 +1,18 @@
 #include "vigia/mission/setup.hpp"
 
 #include "params.hpp"
+#include "robot_parts.hpp"
 
 #include <algorithm>
+#include <string_view>
 
 #include <fmt/format.h>
 
 #include "vigia/core/key_reference.hpp"
 #include "vigia/core/noise_params.hpp"
+#include "vigia/localization/flow_fed_localizer.hpp"
 #include "vigia/localization/params.hpp"
+#include "vigia/mission/delays.hpp"
 #include "vigia/mission/localizers.hpp"
 #include "vigia/pilot/params.hpp"
 #include "vigia/planner/params.hpp"
@@ -123,15 +127,29 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+const char* remedy_without_prior(FirstPose first_pose) {
+  switch (first_pose) {
+    case FirstPose::prior:
+      return "it never finds itself, give one or leave it out of the localizers";
+    case FirstPose::recovery:
+      return "give one, leave it out of the localizers, or let it be the primary of a robot whose "
+             "head can look around";
+    case FirstPose::looks:
+      return "give one, leave it out of the localizers, or let a head direct the robot's camera";
+    case FirstPose::itself:
+      break;
+  }
+  return "give one";
+}
+
 void require_fit(ParamVisitor& v, const char* key, const MissionSetup& setup) {
   if (v.reader() == nullptr) return;
   for (const std::string& name : setup.localizers) {
     const LocalizerEntry& entry = *find_name(localizers(), name);
     v.require(entry.fits(setup), key, "'" + name + "' needs " + entry.needs);
     v.require(setup.prior || !needs_prior(entry, setup), key,
-              "'" + name +
-                  "' cannot start without a prior (start.prior: false); leave it out, or let it be "
-                  "the primary of a robot whose head can look around");
+              fmt::format("'{}' cannot start without a prior (start.prior: false): {}", name,
+                          remedy_without_prior(entry.first_pose)));
   }
 }
 
@@ -240,17 +258,51 @@ void require_cameras(ParamVisitor& v, const MissionSetup& setup) {
   }
 }
 
-/// What comes later than the localizers remember is lost.
+std::string seconds_text(Duration time) {
+  return fmt::format("{:g} s", time.seconds());
+}
+
+/// What comes later than a localizer remembers is lost to it.
 void require_in_time(ParamVisitor& v, const MissionSetup& setup) {
-  const auto& late = setup.disturbances.latency;
-  const double delay_s = late ? late->latency_s + late->processing_s : 0.0;
-  const double history_s = std::min(setup.ekf.history_s, setup.bearing_only.history_s);
-  for (const sim::CameraSetup& camera : setup.robot.cameras)
-    v.require(camera.camera.latency_s + delay_s <= history_s, "localization",
-              "images of camera " + std::to_string(camera.camera.id) + " come " +
-                  std::to_string(camera.camera.latency_s + delay_s) +
-                  " s late (its latency_s and disturbances.latency), and the localizers remember " +
-                  std::to_string(history_s) + " s (history_s of ekf and bearing_only)");
+  if (v.reader() == nullptr) return;
+  const Rig rig = setup.robot.rig();
+  for (const Camera& camera : rig.cameras) {
+    const Duration delay = longest_delay(setup, camera);
+    const std::string late = fmt::format(
+        "images of camera {} come up to {} late (its latency_s, and latency_s, processing_s and "
+        "the wait for it of disturbances.latency)",
+        camera.id, seconds_text(delay));
+    for (const std::string& name : setup.localizers) {
+      const LateImages& taken = find_name(localizers(), name)->late;
+      if (eye_of(camera, setup.world, rig) != taken.eye) continue;
+      const Duration history = taken.history(setup);
+      v.require(delay <= history, "localization",
+                fmt::format("{}, and '{}' remembers {}{}", late, name, seconds_text(history),
+                            taken.key.empty() ? "" : fmt::format(" ({})", taken.key)));
+    }
+    const bool waited_for =
+        std::any_of(setup.flow.begin(), setup.flow.end(),
+                    [](const std::string& name) { return name != "ceiling" && name != kNobody; });
+    const Duration wait = localization::FlowFedLocalizer::longest_wait();
+    v.require(
+        !waited_for || eye_of(camera, setup.world, rig) != std::string_view("ceiling") ||
+            delay <= wait,
+        "localization",
+        fmt::format("{}, and the localizers of `flow` wait {} for it", late, seconds_text(wait)));
+  }
+}
+
+/// Above the ceiling nothing of the building is seen.
+void require_below_ceiling(ParamVisitor& v, const MissionSetup& setup) {
+  const double ceiling_m = setup.world.plan.ceiling_m();
+  for (const sim::CameraSetup& camera : setup.robot.cameras) {
+    const double height_m =
+        (setup.world.ground.place(setup.start) * camera.camera.rMc({})).translation().z();
+    v.require(height_m < ceiling_m, "robot",
+              fmt::format("camera {} is {:g} m above the floor, must be below the room's ceiling "
+                          "(room.height_m {:g})",
+                          camera.camera.id, height_m, ceiling_m));
+  }
 }
 
 void describe_planner(ParamVisitor& v, MissionSetup& setup) {
@@ -323,6 +375,7 @@ void describe(ParamVisitor& v, MissionSetup& setup) {
   require_in_time(v, setup);
   v.map("planner", "when and where the robot looks", [&] { describe_planner(v, setup); });
   require_cameras(v, setup);
+  require_below_ceiling(v, setup);
   setup.gaze.look_angle = setup.noise.sensor.look_angle;
   describe_gaze(v, setup);
   v.map("pilot", "how the base follows the route", [&] { describe_pilot(v, setup); });

@@ -156,6 +156,39 @@ TEST(SetConfig, TakesWholeMapsAndKeepsWhatStandsAfterTheFirstEqualsSign) {
   EXPECT_EQ(root->find("d")->scalar, "e=f");
 }
 
+TEST(SetConfig, ReachesTheItemsOfAList) {
+  const auto root = parse_config(
+      "version: 1\nrobot: {cameras: [{focal_px: 400}, {focal_px: 500}]}\ngrid: [[1, 2], [3, 4]]\n",
+      "x.yaml");
+  set_config(*root, "robot.cameras[1].period_s=0.5");
+  const ConfigNode& cameras = *root->find("robot")->find("cameras");
+  EXPECT_EQ(cameras.items[1]->find("period_s")->scalar, "0.5");
+  EXPECT_EQ(cameras.items[1]->find("focal_px")->scalar, "500");
+  EXPECT_EQ(cameras.items[0]->find("period_s"), nullptr);
+  set_config(*root, "grid[1][0]=7");
+  EXPECT_EQ(root->find("grid")->items[1]->items[0]->scalar, "7");
+  EXPECT_EQ(root->find("grid")->items[1]->items[1]->scalar, "4");
+  set_config(*root, "robot.cameras[0]=null");
+  ASSERT_EQ(cameras.items.size(), 1U);
+  EXPECT_EQ(cameras.items[0]->find("focal_px")->scalar, "500");
+}
+
+TEST(SetConfig, SaysWhatIsWrongWithAPlaceInAList) {
+  const auto root = parse_config("version: 1\nlist: [1]\nmap: {a: 1}\n", "x.yaml");
+  const auto error = [&](const std::string& assignment) {
+    return input_error([&] { set_config(*root, assignment); });
+  };
+  EXPECT_EQ(error("list[1]=2"),
+            "--set list[1]=2: 'list' has 1 item (x.yaml:2:7), counted from 0: there is no [1]");
+  EXPECT_EQ(error("list[0].a=2"),
+            "--set list[0].a=2: 'list' is a value (x.yaml:2:8), not a map with keys");
+  EXPECT_EQ(error("map[0]=2"), "--set map[0]=2: 'map' is a map (x.yaml:3:6), not a list");
+  EXPECT_EQ(error("none[0]=2"), "--set none[0]=2: there is no list 'none'");
+  for (const std::string path : {"list[]", "list[a]", "list[0", "list[0]a", "list[-1]"})
+    EXPECT_THAT(error(path + "=2"),
+                HasSubstr("a place in a list is written key[0], counted from 0, found '" + path));
+}
+
 TEST(SetConfig, SaysWhatIsWrongWithAnAssignment) {
   const auto root = parse_config("version: 1\nlist: [1]\nscalar: 2\n", "x.yaml");
   const auto error = [&](const std::string& assignment) {

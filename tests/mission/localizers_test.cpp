@@ -16,6 +16,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 MissionSetup load(const std::string& name, const std::vector<std::string>& overrides = {}) {
   return load_mission(VIGIA_SOURCE_DIR "/config/missions/" + name + ".yaml", overrides);
@@ -52,7 +53,8 @@ TEST(Localizers, WithoutAPriorThoseThatCannotStartAreLeftOutOrRefusedByName) {
   EXPECT_FALSE(setup.prior);
   EXPECT_THAT(setup.localizers, ElementsAre("ekf"));
   EXPECT_THAT(refusal({"start.prior=false", "localization.localizers=[ekf, odometry]"}),
-              AllOf(HasSubstr("'odometry' cannot start without a prior"), HasSubstr("localizers")));
+              AllOf(HasSubstr("'odometry' cannot start without a prior"), HasSubstr("localizers"),
+                    HasSubstr("never finds itself"), Not(HasSubstr("primary"))));
   EXPECT_THAT(refusal({"start.prior=false", "localization.localizers=[bearing_only, ekf]",
                        "localization.primary=bearing_only"}),
               HasSubstr("'ekf' cannot start without a prior"));
@@ -77,10 +79,42 @@ TEST(Localizers, WithoutLandmarksThoseThatNeedThemAreRefused) {
 
 TEST(Localizers, ImagesThatComeLaterThanTheyRememberAreRefused) {
   EXPECT_THAT(refusal({"disturbances.latency={latency_s: 0.9, processing_s: 0.2}"}),
-              AllOf(HasSubstr("images of camera 0 come 1.1"), HasSubstr("history_s")));
+              AllOf(HasSubstr("images of camera 0 come up to 1.12 s late"),
+                    HasSubstr("'ekf' remembers 1 s (localization.ekf.history_s)")));
   EXPECT_EQ(refusal({"disturbances.latency={latency_s: 0.9, processing_s: 0.2}",
-                     "localization.ekf.history_s=2", "localization.bearing_only.history_s=2"}),
+                     "localization.ekf.history_s=2"}),
             "");
+}
+
+TEST(Localizers, TheWaitForTheProcessorCounts) {
+  // An image every 0.4 s, processed for 0.6 s: the next one waits as long as the one before allows.
+  const std::vector<std::string> slow{
+      "robot={name: slow, cameras: [{mount: fixed, focal_px: 500, period_s: 0.4}]}",
+      "disturbances.latency={latency_s: 0.1, processing_s: 0.6}"};
+  EXPECT_THAT(refusal(slow), HasSubstr("images of camera 0 come up to 1.08 s late"));
+}
+
+TEST(Localizers, ImagesThatComeLaterThanOneRemembersConcernThoseWhomTheyAreForAlone) {
+  const std::string hall =
+      "robot={name: up, cameras: [{mount: fixed, mount_m: [0, 0, 0.5], "
+      "rpy_deg: [0, -90, 0], focal_px: 500, latency_s: LATE}]}";
+  const auto up = [&](const std::string& late) {
+    std::string robot = hall;
+    return robot.replace(robot.find("LATE"), 4, late);
+  };
+  const auto refused = [&](const std::string& late, const std::string& flow) {
+    try {
+      load("ceiling-hall",
+           {up(late), "localization.localizers=[ceiling, odometry]", "localization.flow=" + flow});
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refused("0.9", "[ceiling]"), "");
+  EXPECT_THAT(refused("1.2", "[ceiling]"), HasSubstr("'ceiling' remembers 1 s"));
+  EXPECT_THAT(refused("0.9", "[odometry]"), HasSubstr("the localizers of `flow` wait 0.5 s"));
+  EXPECT_EQ(refused("0.4", "[odometry]"), "");
 }
 
 TEST(Localizers, AllTakeTheirNoiseFromTheOneModelUnlessTheirOwnKeysOverrideIt) {

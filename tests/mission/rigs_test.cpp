@@ -65,6 +65,29 @@ TEST(Rigs, AHeadDirectsACameraThatHasNoZoom) {
   EXPECT_LT(scorer.score().localizers.at("ekf").position_rmse_m, 0.05);
 }
 
+class EventCounts : public Listener {
+ public:
+  void on_event(const Event& event) override { ++of[event.kind]; }
+  std::map<EventKind, int> of;
+};
+
+TEST(Rigs, AHeadWaitsForTheImagesOfASlowCamera) {
+  for (const std::string timing :
+       {"period_s: 0.5", "period_s: 1", "period_s: 0.5, latency_s: 0.4"}) {
+    EventCounts events;
+    evaluation::DriveScorer scorer;
+    run_mission(room("head: {mount_m: [0.1, 0, 1.2]}, cameras: [{focal_px: 900, " + timing + "}]",
+                     {"timeout_s=40"}),
+                3, {&events, &scorer});
+    EXPECT_GE(events.of[EventKind::acquired], 3) << timing;
+    EXPECT_EQ(events.of[EventKind::target_lost], 0) << timing;
+    // The drive may end in the middle of the last one.
+    EXPECT_GE(events.of[EventKind::released], events.of[EventKind::acquired] - 1) << timing;
+    EXPECT_EQ(events.of[EventKind::stop], 0) << timing;
+    EXPECT_LT(scorer.score().localizers.at("ekf").position_rmse_m, 0.05) << timing;
+  }
+}
+
 class LossLog : public Listener {
  public:
   void on_start(const MissionStart& start) override { names_ = start.setup.localizers; }
@@ -142,6 +165,24 @@ TEST(Rigs, WhatNoLocalizerCanUseIsRefused) {
                              "rpy_deg: [0, -90, 0]}, {id: 2, mount: fixed, mount_m: [0.3, 0, 0.5], "
                              "rpy_deg: [0, -90, 0]}]}"}),
       InputError);
+}
+
+TEST(Rigs, ACameraAboveTheRoomsCeilingIsRefused) {
+  const auto refused = [](const std::string& robot) {
+    try {
+      room(robot);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string fixed = "cameras: [{id: 5, mount: fixed, focal_px: 400, mount_m: [0, 0, ";
+  EXPECT_EQ(refused(fixed + "2.7]}]"), "");
+  const std::string above = refused(fixed + "5]}]");
+  EXPECT_NE(above.find("camera 5 is 5 m above the floor"), std::string::npos) << above;
+  EXPECT_NE(above.find("room.height_m 2.8"), std::string::npos) << above;
+  EXPECT_NE(refused("head: {mount_m: [0, 0, 3]}, cameras: [{focal_px: 400}]").find("3 m above"),
+            std::string::npos);
 }
 
 TEST(Rigs, AnOmnidirectionalCameraIsRefusedWhereNoEyeReadsIt) {

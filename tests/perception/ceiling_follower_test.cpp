@@ -1,5 +1,7 @@
 #include "vigia/perception/ceiling_follower.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "vigia/core/angle.hpp"
@@ -84,6 +86,79 @@ TEST_F(FollowedCeiling, TiltAndHeightAreFoundFromADriveThatTurns) {
   EXPECT_NEAR(to_deg(found.tilt_y), to_deg(errors.tilt_y), 0.02);
   EXPECT_NEAR(found.log_height, errors.log_height, 0.003);
   EXPECT_EQ(follower.belief()->status, BeliefStatus::tracking);
+}
+
+/// Patches of a perfect grid as a level camera sees them, without a picture.
+class ToldCeiling : public FollowedCeiling {
+ protected:
+  PatchImage patch_at(const Eigen::Vector2d& q, double psi) const {
+    PatchImage patch;
+    const double px_per_m = view_.camera.px / view_.rise_m;
+    patch.uv = Eigen::Vector2d(view_.camera.u0, view_.camera.v0) + px_per_m * q;
+    patch.angle = psi;
+    patch.covariance = Eigen::Vector3d(4e-4, 4e-4, 1e-6).asDiagonal();
+    patch.forward_log_odds = 20.0;
+    return patch;
+  }
+  CeilingFollower::Sight sight_from(const Pose2& pose, double time_s) const {
+    CeilingFollower::Sight sight;
+    sight.stamp = Stamp::from_seconds(time_s);
+    for (int i = -9; i <= 9; ++i) {
+      for (int j = -9; j <= 9; ++j) {
+        const Eigen::Vector2d q =
+            Eigen::Rotation2Dd(-pose.theta) * (Eigen::Vector2d(i, j) - pose.position());
+        if (std::abs(q.x()) < 1.1 && std::abs(q.y()) < 0.8)
+          sight.scan.patches.push_back(patch_at(q, wrap_angle(-pose.theta)));
+      }
+    }
+    return sight;
+  }
+  static ImageShift shift_by(const Eigen::Vector2d& metres) {
+    ImageShift shift;
+    shift.shift = metres / 2.2;
+    shift.covariance = Eigen::Vector3d(1e-8, 1e-8, 1e-8).asDiagonal();
+    return shift;
+  }
+};
+
+TEST_F(ToldCeiling, APatchThatIsNoneOfTheGridsDoesNotLayTheGrid) {
+  CeilingFollower follower(view_);
+  const Pose2 pose{0.3, 0.2, 0.1};
+  CeilingFollower::Sight sight = sight_from(pose, 0.0);
+  sight.scan.patches.push_back(patch_at({0.05, 0.02}, 2.0));
+  follower.follow(sight);
+  ASSERT_TRUE(follower.belief());
+  const Pose2 found = follower.belief()->pose;
+  EXPECT_LT(std::abs(wrap_angle(found.theta - pose.theta)), 0.01);
+  const Eigen::Vector2d off = found.position() - pose.position();
+  EXPECT_LT((off - Eigen::Vector2d(std::round(off.x()), std::round(off.y()))).norm(), 0.005);
+}
+
+TEST_F(ToldCeiling, PatchesAreBelievedAgainstAFlowThatFollowsAShadow) {
+  CeilingFollower follower(view_);
+  Pose2 pose{0.0, 0.0, 0.0};
+  for (int i = 0; i < 20; ++i) {
+    CeilingFollower::Sight sight = sight_from(pose, 0.125 * i);
+    if (i > 0) sight.motion = shift_by({0.02, i > 5 ? 0.08 : 0.0});
+    const auto step = follower.follow(sight);
+    EXPECT_EQ(step.update, localization::CeilingUpdate::fused) << i;
+    EXPECT_LT((follower.belief()->pose.position() - pose.position()).norm(), 0.005) << i;
+    EXPECT_EQ(follower.belief()->status, BeliefStatus::tracking) << i;
+    pose = compose(pose, {0.02, 0.0, 0.0});
+  }
+}
+
+TEST_F(ToldCeiling, AJumpThatTheRobotCannotMakeIsSaid) {
+  for (const Eigen::Vector2d jump : {Eigen::Vector2d(0.8, 0.3), {-0.3, 0.31}, {3.6, -2.56}}) {
+    CeilingFollower follower(view_);
+    Pose2 pose{0.0, 0.0, 0.0};
+    for (int i = 0; i < 30; ++i) {
+      follower.follow(sight_from(pose, 0.04 * i));
+      if (i >= 22) EXPECT_NE(follower.belief()->status, BeliefStatus::tracking) << jump << ' ' << i;
+      pose = compose(pose, {0.02, 0.0, 0.0});
+      if (i == 19) pose = {pose.x + jump.x(), pose.y + jump.y(), 0.0};
+    }
+  }
 }
 
 TEST_F(FollowedCeiling, WithoutAPatchThereIsNoPose) {

@@ -147,6 +147,37 @@ TEST(RobotSetup, SaysWhatIsWrongWithAListOfCameras) {
               HasSubstr("head"));
 }
 
+TEST(RobotSetup, APhaseNeedsAPeriodThatItFitsInto) {
+  const auto error = [](const std::string& timing) {
+    return error_of(
+        [&] { setup_from("cameras:\n  - {mount: fixed, focal_px: 400, " + timing + "}\n"); });
+  };
+  EXPECT_EQ(error("period_s: 0.2, phase_s: 0.19"), "no error");
+  EXPECT_EQ(error("period_s: 0, phase_s: 0"), "no error");
+  EXPECT_THAT(error("phase_s: 20"), AllOf(HasSubstr("robot.yaml:3:"), HasSubstr("phase_s"),
+                                          HasSubstr("found 20"), HasSubstr("without a period_s")));
+  EXPECT_THAT(error("period_s: 0.2, phase_s: 0.2"),
+              AllOf(HasSubstr("robot.yaml:3:"), HasSubstr("found 0.2"),
+                    HasSubstr("less than the camera's period_s, 0.2")));
+}
+
+TEST(RobotSetup, ACameraIsAboveTheFloorAndOutsideTheHull) {
+  const auto error = [](const std::string& place, const std::string& base) {
+    return error_of([&] {
+      setup_from("cameras:\n  - {mount: fixed, focal_px: 400, mount_m: " + place + "}\n" +
+                 "base: {radius_m: 0.25, " + base + "}\n");
+    });
+  };
+  EXPECT_THAT(error("[0, 0, -0.5]", "speed_mps: 1"),
+              AllOf(HasSubstr("robot.yaml:3:"), HasSubstr("must be > 0, found -0.5")));
+  EXPECT_THAT(error("[0.1, 0, 0.5]", "body_height_m: 1"),
+              AllOf(HasSubstr("robot.yaml:4:"), HasSubstr("camera 0 is mounted inside the hull"),
+                    HasSubstr("body_height_m 1")));
+  EXPECT_EQ(error("[0.1, 0, 0.5]", "body_height_m: 0"), "no error");
+  EXPECT_EQ(error("[0.1, 0, 1]", "body_height_m: 1"), "no error");
+  EXPECT_EQ(error("[0.25, 0, 0.5]", "body_height_m: 1"), "no error");
+}
+
 TEST(RobotSetup, ABaseMayGoSideways) {
   const RobotSetup setup =
       setup_from(kTable + "base: {speed_mps: 0.5, drive: omnidirectional, side_speed_mps: 0.4}\n");

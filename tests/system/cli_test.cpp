@@ -125,6 +125,16 @@ TEST_F(Program, GivesUnitRangeAndDefaultOfAKey) {
   EXPECT_THAT(vigia("help keys planner.trigger").out, HasSubstr("planner.trigger.limit_2_m"));
 }
 
+TEST_F(Program, ExplainsTheKeysOfAListsItems) {
+  for (const std::string path : {"robot.cameras", "robot.cameras[]", "robot.cameras[0]"}) {
+    const auto result = vigia("help keys '" + path + "'");
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_THAT(result.out, HasSubstr("robot.cameras[].period_s")) << path;
+  }
+  EXPECT_THAT(vigia("help keys 'robot.cameras[1].phase_s'").out,
+              HasSubstr("of the first exposure"));
+}
+
 TEST_F(Program, TellsLocalizersTrackersAndPoliciesApart) {
   EXPECT_THAT(vigia("help localizers").out, HasSubstr("dead reckoning alone"));
   EXPECT_THAT(vigia("help trackers").out, HasSubstr("AprilTags of the family 36h11"));
@@ -155,6 +165,7 @@ TEST_F(Program, ChecksEveryKindOfFileThatItComesWith) {
   for (const auto& [file, said] :
        {std::pair{"/missions/tag-room.yaml", "a mission, \"tag-room\""},
         {"/worlds/mixed-room.yaml", "a world, \"mixed-room\""},
+        {"/fields/12x8.yaml", "a field, 12 × 8 m, with 18 lines"},
         {"/robots/b21.yaml", "a robot, \"b21\""},
         {"/campaigns/armingol-policies.yaml", "a campaign, \"armingol-policies\""},
         {"/fuzzy/choice.fll", "a fuzzy rule base, with 3 inputs"}}) {
@@ -312,6 +323,18 @@ TEST_F(Program, LeavesNothingBehindOnAFullDisk) {
   EXPECT_EQ(result.status, 2) << result.err;
   EXPECT_THAT(result.err, HasSubstr("No space left on device"));
   EXPECT_EQ(result.out, "");
+}
+
+TEST_F(Program, LeavesNothingBehindWhereFilesMayNotGrow) {
+  const auto out = dir_.path() / "limited";
+  fs::create_directory(out);
+  const auto result =
+      vigia::testing::run_process("sh -c 'ulimit -f 16; exec " + std::string(VIGIA_PROGRAM) + " " +
+                                      short_run(out / "run") + "'",
+                                  dir_.path());
+  EXPECT_EQ(result.status, 2) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("File too large"));
+  EXPECT_TRUE(fs::is_empty(out));
 }
 
 TEST_F(Program, LeavesNothingBehindWhenItIsInterrupted) {

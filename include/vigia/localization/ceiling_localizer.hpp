@@ -2,6 +2,7 @@
 
 #include <deque>
 
+#include "vigia/core/stamp.hpp"
 #include "vigia/localization/ceiling_filter.hpp"
 #include "vigia/localization/localizer.hpp"
 
@@ -13,6 +14,9 @@ namespace vigia::localization {
 /// say where in it a lost robot is: without a prior it stays lost.
 class CeilingLocalizer final : public Localizer {
  public:
+  /// How late an image may come.
+  static Duration history() { return Duration::from_seconds(1.0); }
+
   /// @p flow: whether the ceiling's flow moves it, too.
   CeilingLocalizer(const CeilingCamera& camera, const CeilingGrid& grid,
                    const CeilingFilterParams& params, bool flow = true)

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "vigia/core/rig.hpp"
+#include "vigia/core/stamp.hpp"
 #include "vigia/localization/field_tracker.hpp"
 #include "vigia/localization/localizer.hpp"
 #include "vigia/localization/mcl.hpp"
@@ -29,6 +30,9 @@ struct MirrorOfRig {
 /// has what is not known of them beside the method's own.
 class FieldLocalizer : public Localizer {
  public:
+  /// How late an image may come.
+  static Duration history() { return Duration::from_seconds(1.0); }
+
   const Belief& belief() const final { return belief_; }
   void reset(Stamp stamp, const std::optional<Prior>& prior) final;
   void predict(const OdometryIncrement& increment) final;

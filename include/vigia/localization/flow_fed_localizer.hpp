@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "vigia/core/stamp.hpp"
 #include "vigia/localization/ceiling_filter.hpp"
 #include "vigia/localization/ceiling_model.hpp"
 #include "vigia/localization/localizer.hpp"
@@ -27,6 +28,9 @@ std::optional<OdometryIncrement> joined_with_flow(const std::vector<OdometryIncr
 /// joined_with_flow()): over a long way the localizer is too sure by their share.
 class FlowFedLocalizer final : public Localizer {
  public:
+  /// For a flow.
+  static Duration longest_wait() { return Duration::from_seconds(0.5); }
+
   FlowFedLocalizer(std::unique_ptr<Localizer> fed, const CeilingCamera& camera,
                    const CeilingFilterParams& params);
 

@@ -3,6 +3,7 @@
 #include <deque>
 #include <vector>
 
+#include "vigia/core/stamp.hpp"
 #include "vigia/localization/corner_filter.hpp"
 #include "vigia/localization/localizer.hpp"
 #include "vigia/localization/station_fix.hpp"
@@ -22,6 +23,9 @@ struct MlFixParams {
 /// exposed; without a fix it is let go.
 class MlFixLocalizer final : public Localizer {
  public:
+  /// How late an image may come.
+  static Duration history() { return Duration::from_seconds(1.0); }
+
   MlFixLocalizer(FieldMap field, const MlFixParams& params);
 
   std::string_view name() const override { return "ml_fix"; }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "vigia/core/name_table.hpp"
+#include "vigia/core/stamp.hpp"
 #include "vigia/localization/ceiling_model.hpp"
 #include "vigia/localization/corner_filter.hpp"
 #include "vigia/localization/localizer.hpp"
@@ -22,12 +23,20 @@ enum class FirstPose {
   itself,    ///< it finds itself
 };
 
+/// Which images a localizer learns from, and how late they may come.
+struct LateImages {
+  std::string eye;  ///< that reads them; empty: it learns from none
+  Duration (*history)(const MissionSetup& setup);
+  std::string key;  ///< of a mission, that sets it; empty: none does
+};
+
 struct LocalizerEntry : NameEntry {
   bool usual;  ///< cheap: runs wherever it fits, unless the mission names its localizers
   FirstPose first_pose;
   bool (*fits)(const MissionSetup& setup);  ///< whether robot and world have what it needs
   /// @p seed: the mission's, of a localizer that draws.
   std::unique_ptr<localization::Localizer> (*make)(const MissionSetup& setup, std::uint64_t seed);
+  LateImages late;
 };
 
 /// Every localizer, in the order of a run's tables.
@@ -51,7 +60,7 @@ std::optional<localization::CeilingCamera> ceiling_camera(const MissionSetup& se
 /// the world has a field with goals.
 std::optional<localization::CornerFilterParams> corner_filter_params(const MissionSetup& setup);
 
-/// The usual ones that fit and can start.
+/// The usual ones that fit and can start; where images come late, without those that take none.
 std::vector<std::string> usual_localizers(const MissionSetup& setup);
 
 }  // namespace vigia::mission

@@ -13,6 +13,8 @@
 
 namespace vigia::servo {
 
+/// Of a camera that exposes in every tick and delivers at once; whoever has another one waits
+/// longer.
 struct GazeParams {
   PanTiltServoParams servo;
   ZoomControlParams zoom;

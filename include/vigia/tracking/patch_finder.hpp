@@ -31,8 +31,9 @@ struct PatchScan {
 /// Finds all patches of a frame. Rows so close together that no patch lies between them are scanned
 /// for dark chords; round each, a window is read, filled at half contrast, and the patch's blurred
 /// shape fitted to its grey values, which reaches the Cramér–Rao bound of place and direction. Of a
-/// patch that the border cuts, the size that is expected stands for the end that is not seen. Only
-/// the rows and windows are read.
+/// patch that the border cuts, the size that is expected stands for the end that is not seen. What
+/// is a patch only if it moved while it was exposed is one where another of the frame moved alike.
+/// Only the rows and windows are read.
 class PatchFinder {
  public:
   explicit PatchFinder(const PatchFinderParams& params = {}) : params_(params) {}
