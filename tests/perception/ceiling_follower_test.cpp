@@ -149,12 +149,14 @@ TEST_F(ToldCeiling, PatchesAreBelievedAgainstAFlowThatFollowsAShadow) {
 }
 
 TEST_F(ToldCeiling, AJumpThatTheRobotCannotMakeIsSaid) {
-  for (const Eigen::Vector2d jump : {Eigen::Vector2d(0.8, 0.3), {-0.3, 0.31}, {3.6, -2.56}}) {
+  for (const Eigen::Vector2d& jump : {Eigen::Vector2d(0.8, 0.3), {-0.3, 0.31}, {3.6, -2.56}}) {
     CeilingFollower follower(view_);
     Pose2 pose{0.0, 0.0, 0.0};
     for (int i = 0; i < 30; ++i) {
       follower.follow(sight_from(pose, 0.04 * i));
-      if (i >= 22) EXPECT_NE(follower.belief()->status, BeliefStatus::tracking) << jump << ' ' << i;
+      if (i >= 22) {
+        EXPECT_NE(follower.belief()->status, BeliefStatus::tracking) << jump << ' ' << i;
+      }
       pose = compose(pose, {0.02, 0.0, 0.0});
       if (i == 19) pose = {pose.x + jump.x(), pose.y + jump.y(), 0.0};
     }
