@@ -604,7 +604,7 @@ CeilingFilter::Fit CeilingFilter::fit_against_flow(const std::vector<Seen>& seen
   P_.topLeftCorner<3, 3>() += unknown_motion(0.0, flow_alone_s_);
   refresh_belief();
   if (!open()) {
-    const Fit fitted = fit(seen);
+    Fit fitted = fit(seen);
     if (fitted.passed.size() >= 2) return fitted;
   }
   P_.topLeftCorner<3, 3>() = before;
