@@ -207,6 +207,17 @@ std::optional<Eigen::Vector2d> forward_axis(const DarkSpot& spot, const Eigen::M
   return skewness(spot, along) < 0.0 ? Eigen::Vector2d(-along) : along;
 }
 
+PatchShape lying_along(const Eigen::Vector2d& along, const DarkSpot& spot, const DarkChord& chord,
+                       const PatchFinderParams& params) {
+  PatchShape shape;
+  shape.uv = spot.mean;
+  shape.angle = std::atan2(along.y(), along.x());
+  shape.patch = chord.patch;
+  shape.ground = chord.ground;
+  shape.blur = params.blur_px;
+  return shape;
+}
+
 /// Where a fit may begin: long enough to have a direction.
 std::optional<PatchShape> start_of(const DarkSpot& spot, const DarkChord& chord,
                                    const PatchFinderParams& params, const Window& frame) {
@@ -215,12 +226,7 @@ std::optional<PatchShape> start_of(const DarkSpot& spot, const DarkChord& chord,
   if (spot.area < (spot.at_border ? 0.35 : 0.4) * whole) return std::nullopt;
   const auto along = forward_axis(spot, spot.covariance, spot.at_border ? 1.3 : 1.8);
   if (!along) return std::nullopt;
-  PatchShape shape;
-  shape.uv = spot.mean;
-  shape.angle = std::atan2(along->y(), along->x());
-  shape.patch = chord.patch;
-  shape.ground = chord.ground;
-  shape.blur = params.blur_px;
+  PatchShape shape = lying_along(*along, spot, chord, params);
   if (spot.at_border) {
     // What is missing lies towards the border.
     const double seen = std::sqrt(12.0 * along->dot(spot.covariance * *along));
@@ -242,12 +248,7 @@ std::optional<PatchShape> moved_start_of(const DarkSpot& spot, const DarkChord& 
     return std::nullopt;
   const auto along = forward_axis(spot, spot.covariance - motion * motion.transpose() / 12.0, 1.1);
   if (!along) return std::nullopt;
-  PatchShape shape;
-  shape.uv = spot.mean;
-  shape.angle = std::atan2(along->y(), along->x());
-  shape.patch = chord.patch;
-  shape.ground = chord.ground;
-  shape.blur = params.blur_px;
+  PatchShape shape = lying_along(*along, spot, chord, params);
   shape.motion = motion;
   return shape;
 }

@@ -5,7 +5,7 @@
 namespace vigia::perception {
 namespace {
 
-constexpr int kPasses = 2;  // after the first; a third moves no drive's result by a tenth of its σ
+constexpr int kPasses = 2;  // after the first; a third changes none of five digits (eight drives)
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 #include "vigia/evaluation/drive_bound.hpp"
 
+#include "evaluation/filter_on_truth.hpp"
 #include "localization/drive.hpp"
 
 #include <deque>
@@ -7,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include "vigia/localization/ceiling_localizer.hpp"
-#include "vigia/localization/ekf.hpp"
 
 namespace vigia::evaluation {
 namespace {
@@ -46,21 +46,15 @@ EstimatorSetup setup_of(const Drive& drive, Duration longest_delay) {
 }
 
 TEST(DriveBound, OfLateImagesIsTheCovarianceOfAFilterThatSitsOnTheTruth) {
-  // Perfect odometry and perfect images: the filter linearises where the bound does.
   const Drive drive = localization::test::simulate_drive({}, 1);
   const LandmarkMap map = localization::test::room_landmarks();
-  localization::EkfParams params;
-  params.odometry = drive.noise.odometry;
-  params.centre_floor_px = 0.0;
-  params.size_floor = 0.0;
-  localization::EkfLocalizer ekf(map, {head_rig(drive.geometry), {}}, params);
-  ekf.reset({}, Prior{drive.start, drive.prior.covariance});
+  const auto ekf = test::filter_on_truth(drive);
   DriveBound bound(setup_of(drive, kDelay));
   std::deque<LateImage> on_the_way;
   Pose2 before = drive.start;
   int fused = 0;
   for (const DriveStep& step : drive.steps) {
-    ekf.predict(step.truth);
+    ekf->predict(step.truth);
     bound.move(before, step.truth);
     before = step.pose;
     if (step.seen)
@@ -68,12 +62,12 @@ TEST(DriveBound, OfLateImagesIsTheCovarianceOfAFilterThatSitsOnTheTruth) {
                             {step.seen->shot.stamp, step.pose, {}}});
     while (!on_the_way.empty() && on_the_way.front().truth.stamp + kDelay <= step.truth.to) {
       const LateImage& late = on_the_way.front();
-      ASSERT_EQ(ekf.update(late.observation).status, localization::UpdateStatus::fused);
+      ASSERT_EQ(ekf->update(late.observation).status, localization::UpdateStatus::fused);
       bound.learn(late.observation, late.truth);
       on_the_way.pop_front();
       ++fused;
     }
-    ASSERT_TRUE(ekf.belief().covariance.isApprox(bound.covariance(), 1e-5))
+    ASSERT_TRUE(ekf->belief().covariance.isApprox(bound.covariance(), 1e-5))
         << "at " << step.truth.to.seconds() << " s, after " << fused << " images";
   }
   EXPECT_GT(fused, 300);

@@ -1,10 +1,9 @@
 #include "vigia/evaluation/pcrlb.hpp"
 
+#include "evaluation/filter_on_truth.hpp"
 #include "localization/drive.hpp"
 
 #include <gtest/gtest.h>
-
-#include "vigia/localization/ekf.hpp"
 
 namespace vigia::evaluation {
 namespace {
@@ -13,20 +12,14 @@ using localization::test::Drive;
 using localization::test::DriveStep;
 
 TEST(PosteriorBound, EqualsTheCovarianceOfAFilterThatSitsOnTheTruth) {
-  // Perfect odometry and perfect images: the filter linearises where the bound does.
   Drive drive = localization::test::simulate_drive({}, 1);
   const LandmarkMap map = localization::test::room_landmarks();
-  localization::EkfParams params;
-  params.odometry = drive.noise.odometry;
-  params.centre_floor_px = 0.0;
-  params.size_floor = 0.0;
-  localization::EkfLocalizer ekf(map, {head_rig(drive.geometry), {}}, params);
-  ekf.reset({}, Prior{drive.start, drive.prior.covariance});
+  const auto ekf = test::filter_on_truth(drive);
   PosteriorBound bound(drive.prior.covariance, {head_rig(drive.geometry), {}}, drive.noise.sensor);
   RandomStream random(1, "unused");
   Pose2 before = drive.start;
   for (const DriveStep& step : drive.steps) {
-    ekf.predict(step.truth);
+    ekf->predict(step.truth);
     bound.predict(before, step.truth, control_covariance(step.truth, drive.noise.odometry));
     before = step.pose;
     if (!step.seen) continue;
@@ -36,9 +29,9 @@ TEST(PosteriorBound, EqualsTheCovarianceOfAFilterThatSitsOnTheTruth) {
     EllipseObservation seen = localization::test::observe(landmark, shot, drive.geometry, step.pose,
                                                           {}, 0.0, 0.0, random);
     seen.covariance = step.seen->covariance;
-    ASSERT_EQ(ekf.update(seen).status, localization::UpdateStatus::fused);
+    ASSERT_EQ(ekf->update(seen).status, localization::UpdateStatus::fused);
     ASSERT_TRUE(bound.update(step.pose, {}, landmark, seen));
-    ASSERT_TRUE(ekf.belief().covariance.isApprox(bound.covariance(), 1e-6));
+    ASSERT_TRUE(ekf->belief().covariance.isApprox(bound.covariance(), 1e-6));
   }
 }
 
