@@ -70,7 +70,8 @@ class FuzzyPolicy final : public LookPolicy {
     // are QUIXOTE's rejected patterns.
     if (!disc_radius(landmark) && judged.suitability < parts_.perception.reject)
       return std::nullopt;
-    judged.sight_w = landmark.centre_w().head<2>() - arrival.pose.position();
+    judged.sight_w =
+        parts_.head.ground.in_plan(landmark.centre_w()).head<2>() - arrival.pose.position();
     // The supervisor speaks of the robot's own axes.
     const Eigen::Matrix2d turned = Eigen::Rotation2Dd(-arrival.pose.theta).toRotationMatrix();
     judged.value = judged.suitability *

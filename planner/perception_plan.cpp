@@ -34,7 +34,8 @@ class Study {
     Eigen::Vector2d sight = Eigen::Vector2d::Zero();
     for (const ControlPosition& position : area.positions) {
       const double distance = visibility_.range(landmark, position.pose);
-      const Eigen::Vector2d towards = landmark.centre_w().head<2>() - position.pose.position();
+      const Eigen::Vector2d towards =
+          head_.ground.in_plan(landmark.centre_w()).head<2>() - position.pose.position();
       sight += towards.normalized();
       if (usable(landmark, position)) {
         study.suitability += supervisors_.suitability(

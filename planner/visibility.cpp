@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vigia/core/line_of_sight.hpp"
+
 namespace vigia::planner {
 namespace {
 
@@ -30,7 +32,7 @@ Sight Visibility::sight(const Landmark& landmark, const Pose2& pose) const {
   if (!pan_reaches || !within(aim.tilt, limits_.tilt_min, limits_.tilt_max))
     return Sight::out_of_reach;
 
-  const bool clear = plan_->line_of_sight(wMr * head_.mount_r, landmark.centre_w());
+  const bool clear = line_of_sight(*plan_, ground_, wMr * head_.mount_r, landmark.centre_w());
   return clear ? Sight::visible : Sight::hidden;
 }
 

@@ -3,18 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vigia/core/belief_on_ground.hpp"
 #include "vigia/core/odometry.hpp"
+#include "vigia/core/plane_geometry.hpp"
 #include "vigia/servo/slew_law.hpp"
 
 namespace vigia::servo {
 namespace {
 
 /// A point of the base frame, seen from where the base will be after @p seconds at constant rates.
-Eigen::Vector3d after_motion(const Eigen::Vector3d& p_r, const BaseRates& base, double seconds) {
-  const auto arc = arc_increment(base, Stamp{}, Stamp::from_seconds(seconds));
-  return to_isometry(move(Pose2{}, arc)).inverse() * p_r;
-}
-
 /// Half of the smaller side of the image, px.
 double half_image(const Intrinsics& intrinsics) {
   return 0.5 * std::min(intrinsics.width, intrinsics.height);
@@ -99,7 +96,7 @@ GazeOutput GazeController::step(const GazeInput& input) {
 /// Where the landmark was seen, as the base moves on.
 void GazeController::carry_target(const GazeInput& input) {
   if (seen_at_r_ && last_step_)
-    seen_at_r_ = after_motion(*seen_at_r_, input.base, (input.now - *last_step_).seconds());
+    seen_at_r_ = after_motion(*seen_at_r_, input, (input.now - *last_step_).seconds());
   last_step_ = input.now;
 }
 
@@ -107,7 +104,33 @@ Eigen::Vector3d GazeController::landmark_in_base(const GazeInput& input,
                                                  const Landmark& landmark) const {
   // What the camera saw is nearer to the truth than what the belief says.
   if (seen_at_r_) return *seen_at_r_;
-  return ground_.place(input.belief.pose).inverse() * landmark.centre_w();
+  return believed_wMr(input.belief, ground_).inverse() * landmark.centre_w();
+}
+
+/// Where a point of the base frame is in it when the base has run on.
+Eigen::Vector3d GazeController::after_motion(const Eigen::Vector3d& p_r, const GazeInput& input,
+                                             double seconds) const {
+  const auto arc = arc_increment(input.base, Stamp{}, Stamp::from_seconds(seconds));
+  if (ground_.flat()) return to_isometry(move(Pose2{}, arc)).inverse() * p_r;
+  const Pose2& here = input.belief.pose;
+  return ground_.place(move(here, arc)).inverse() * (ground_.place(here) * p_r);
+}
+
+/// What the ground's shape adds to the base's rates.
+BaseTwist GazeController::rolling(const GazeInput& input) const {
+  if (ground_.flat()) return BaseTwist::Zero();
+  const Pose2& here = input.belief.pose;
+  const Eigen::Vector2d ahead = unit_vector(here.theta);
+  const Eigen::Vector2d run =
+      input.base.v * ahead + input.base.vy * Eigen::Vector2d(-ahead.y(), ahead.x());
+  const BaseTwist in_world =
+      ground_.dplace_dpose(here) * Eigen::Vector3d(run.x(), run.y(), input.base.w);
+  const Eigen::Matrix3d rRw = ground_.place(here).linear().transpose();
+  BaseTwist twist;
+  twist << rRw * in_world.head<3>() - Eigen::Vector3d(input.base.v, input.base.vy, 0.0),
+      rRw * in_world.tail<3>() - Eigen::Vector3d(0.0, 0.0, input.base.w);
+  // Within a patch nothing but rounding is left.
+  return twist.norm() > 1e-9 ? twist : BaseTwist::Zero();
 }
 
 /// The same direction within the head's range: the pan nearest to where the head is, and never
@@ -186,7 +209,7 @@ GazeController::Aim GazeController::aim_for(const GazeInput& input,
   aim.now = reachable(aim_at(geometry_, aim.p_r), input.head.angles);
   // Of the aim, not of where the head is: during a slew the head may have the landmark behind it.
   const Eigen::Vector3d p_c = camera_in_base(geometry_, aim.now).inverse() * aim.p_r;
-  if (p_c.z() > 0.0) aim.forward = servo_.compensation(p_c, aim.now, input.base);
+  if (p_c.z() > 0.0) aim.forward = servo_.compensation(p_c, aim.now, input.base, rolling(input));
 
   HeadAngles at_arrival = aim.now;
   aim.focal_px = wanted_focal(input, landmark, aim.p_r);
@@ -194,7 +217,7 @@ GazeController::Aim GazeController::aim_for(const GazeInput& input,
   for (int round = 0; round < 2; ++round) {
     const double ahead =
         std::min(arrival_time(input, at_arrival, aim.focal_px), params_.motion_horizon_s);
-    const Eigen::Vector3d p_r = after_motion(aim.p_r, input.base, ahead);
+    const Eigen::Vector3d p_r = after_motion(aim.p_r, input, ahead);
     at_arrival = reachable(aim_at(geometry_, p_r), input.head.angles);
     aim.focal_px = wanted_focal(input, landmark, p_r);
     aim.intercept = {at_arrival.pan - ahead * aim.forward.pan,
@@ -284,15 +307,15 @@ GazeOutput GazeController::track(const GazeInput& input, const Landmark& landmar
   }
 
   const Eigen::Isometry3d rMc = camera_in_base(geometry_, input.head.angles);
-  const Eigen::Isometry3d rMw = ground_.place(input.belief.pose).inverse();
+  const Eigen::Isometry3d rMw = believed_wMr(input.belief, ground_).inverse();
   // However wrong the belief, what is seen is not within the camera.
   const double range = std::max((rMw * landmark.centre_w() - rMc.translation()).norm(), 0.1);
   const Eigen::Vector2d xy = unproject(input.intrinsics, input.sighting->uv);
   const Eigen::Vector3d p_c = range * Eigen::Vector3d(xy.x(), xy.y(), 1.0).normalized();
   seen_at_r_ = rMc * p_c;
 
-  output.command.angles =
-      servo_.rates(input.intrinsics, input.sighting->uv, p_c.z(), input.head.angles, input.base);
+  output.command.angles = servo_.rates(input.intrinsics, input.sighting->uv, p_c.z(),
+                                       input.head.angles, input.base, rolling(input));
   const double approach = (camera_jacobian_base(geometry_, input.head.angles).row(2) *
                            Eigen::Vector2d(input.base.v, input.base.w))
                               .value() +

@@ -23,14 +23,23 @@ Eigen::Matrix<double, 2, 6> interaction(const Eigen::Vector3d& p_c) {
   return Eigen::Map<const Eigen::Matrix<double, 2, 6, Eigen::RowMajor>>(L.data);
 }
 
+/// The twist of a camera, in its own frame, that the base carries along.
+BaseTwist carried(const Eigen::Isometry3d& rMc, const BaseTwist& of_base) {
+  const Eigen::Vector3d turn = of_base.tail<3>();
+  BaseTwist twist;
+  twist << rMc.linear().transpose() * (of_base.head<3>() + turn.cross(rMc.translation())),
+      rMc.linear().transpose() * turn;
+  return twist;
+}
+
 }  // namespace
 
 PanTiltServo::PanTiltServo(HeadGeometry geometry, PanTiltServoParams params)
     : geometry_(std::move(geometry)), params_(params) {}
 
 HeadAngles PanTiltServo::rates(const Intrinsics& intrinsics, const Eigen::Vector2d& uv,
-                               double depth_m, const HeadAngles& head,
-                               const BaseRates& base) const {
+                               double depth_m, const HeadAngles& head, const BaseRates& base,
+                               const BaseTwist& rolling) const {
   const Eigen::Vector2d xy = unproject(intrinsics, uv);
   vpFeaturePoint s;
   s.buildFrom(xy.x(), xy.y(), depth_m);
@@ -49,7 +58,7 @@ HeadAngles PanTiltServo::rates(const Intrinsics& intrinsics, const Eigen::Vector
   HeadAngles result{q_dot[0], q_dot[1]};
   if (params_.feed_forward) {
     const HeadAngles forward =
-        compensation({depth_m * xy.x(), depth_m * xy.y(), depth_m}, head, base);
+        compensation({depth_m * xy.x(), depth_m * xy.y(), depth_m}, head, base, rolling);
     result.pan += forward.pan;
     result.tilt += forward.tilt;
   }
@@ -57,8 +66,8 @@ HeadAngles PanTiltServo::rates(const Intrinsics& intrinsics, const Eigen::Vector
 }
 
 HeadAngles PanTiltServo::compensation(const Eigen::Vector3d& p_c, const HeadAngles& head,
-                                      const BaseRates& base) const {
-  const HeadAngles now = compensation_now(p_c, head, base);
+                                      const BaseRates& base, const BaseTwist& rolling) const {
+  const HeadAngles now = compensation_now(p_c, head, base, rolling);
   // Held over a tick, the rate must be the mean of the interval: to second order that of its
   // middle.
   const double half = 0.5 * params_.hold_s;
@@ -66,22 +75,24 @@ HeadAngles PanTiltServo::compensation(const Eigen::Vector3d& p_c, const HeadAngl
       camera_jacobian_base(geometry_, head) * Eigen::Vector2d(base.v, base.w) +
       camera_jacobian_head(geometry_, head) * Eigen::Vector2d(now.pan, now.tilt);
   if (base.vy != 0.0) twist += base.vy * camera_twist_sideways(camera_in_base(geometry_, head));
+  if (!rolling.isZero(0.0)) twist += carried(camera_in_base(geometry_, head), rolling);
   const Eigen::Vector3d velocity = twist.head<3>();
   const Eigen::Vector3d omega = twist.tail<3>();
   const Eigen::Vector3d p_c_middle = p_c - half * (velocity + omega.cross(p_c));
   if (p_c_middle.z() <= 0.0) return now;
   return compensation_now(p_c_middle, {head.pan + half * now.pan, head.tilt + half * now.tilt},
-                          base);
+                          base, rolling);
 }
 
 HeadAngles PanTiltServo::compensation_now(const Eigen::Vector3d& p_c, const HeadAngles& head,
-                                          const BaseRates& base) const {
+                                          const BaseRates& base, const BaseTwist& rolling) const {
   // q̇ = −(L·J_head)⁺ L·J_base (v, ω)ᵀ
   const Eigen::Matrix<double, 2, 6> L = interaction(p_c);
   const Eigen::Matrix2d task = L * camera_jacobian_head(geometry_, head);
   Eigen::Vector2d drift =
       L * camera_jacobian_base(geometry_, head) * Eigen::Vector2d(base.v, base.w);
   if (base.vy != 0.0) drift += base.vy * L * camera_twist_sideways(camera_in_base(geometry_, head));
+  if (!rolling.isZero(0.0)) drift += L * carried(camera_in_base(geometry_, head), rolling);
   const Eigen::Vector2d q_dot = -task.completeOrthogonalDecomposition().solve(drift);
   return {q_dot.x(), q_dot.y()};
 }

@@ -132,7 +132,7 @@ bool near_landmark(const Eigen::Vector3d& p, const WorldMap& world, double plate
   return std::any_of(
       world.landmarks.all().begin(), world.landmarks.all().end(), [&](const Landmark& landmark) {
         const double sheet = (disc_radius(landmark) ? plate_factor : 1.0) * half_width(landmark);
-        return (p - landmark.centre_w()).norm() < 1.5 * sheet + 0.25;
+        return (p - world.ground.in_plan(landmark.centre_w())).norm() < 1.5 * sheet + 0.25;
       });
 }
 

@@ -30,7 +30,7 @@ class Figure3d {
  public:
   explicit Figure3d(const Person& person)
       : turn_(Eigen::AngleAxisd(person.heading, Vector3d::UnitZ()).toRotationMatrix()),
-        foot_w_(person.position.x(), person.position.y(), 0.0),
+        foot_w_(person.position.x(), person.position.y(), person.floor_m),
         scale_(person.radius_m, person.radius_m, person.height_m) {}
 
   void ball(const Vector3d& centre, const Vector3d& radii, float grey) {

@@ -103,6 +103,11 @@ void describe(ParamVisitor& v, KidnappingParams& p) {
   v.number("min_m", p.min_m, {0.0, 100.0}, "from where it was");
 }
 
+void describe(ParamVisitor& v, RampErrorParams& p) {
+  v.angle("steeper_deg", p.steeper, {-10.0, 10.0},
+          "by which they are steeper; what they lead to is higher");
+}
+
 void describe(ParamVisitor& v, DisturbanceParams& p) {
   enum class All { off, realistic };
   auto all = All::off;

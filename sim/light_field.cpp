@@ -21,7 +21,8 @@ double LightNow::gain(const Eigen::Vector3d& p_w) const {
   return gain;
 }
 
-LightField::LightField(const LightParams& params, const FloorPlan& plan, std::uint64_t seed)
+LightField::LightField(const LightParams& params, const FloorPlan& plan, std::uint64_t seed,
+                       const Ground& ground)
     : params_(params) {
   RandomStream random(seed, "light");
   const Eigen::Vector2d low = plan.min_corner();
@@ -33,8 +34,9 @@ LightField::LightField(const LightParams& params, const FloorPlan& plan, std::ui
     const std::size_t row = i / 2;
     const double x = 0.25 + 0.5 * static_cast<double>(column) + random.uniform(-0.1, 0.1);
     const double y = 0.25 + 0.5 * static_cast<double>(row) + random.uniform(-0.1, 0.1);
-    full_.lamps[i] = {{low.x() + x * size.x(), low.y() + y * size.y(), plan.ceiling_m()},
-                      random.uniform(0.6, 1.4)};
+    full_.lamps[i] = {
+        ground.lift({low.x() + x * size.x(), low.y() + y * size.y()}, plan.ceiling_m()),
+        random.uniform(0.6, 1.4)};
   }
   double dimmest = std::numeric_limits<double>::infinity();
   double brightest = 0.0;
@@ -42,8 +44,8 @@ LightField::LightField(const LightParams& params, const FloorPlan& plan, std::ui
   for (int i = 0; i <= kGrid; ++i) {
     for (int j = 0; j <= kGrid; ++j) {
       for (const double height : {0.0, 0.5, 1.0}) {
-        const double gain = full_.gain({low.x() + size.x() * i / kGrid,
-                                        low.y() + size.y() * j / kGrid, height * plan.ceiling_m()});
+        const Eigen::Vector2d at(low.x() + size.x() * i / kGrid, low.y() + size.y() * j / kGrid);
+        const double gain = full_.gain(ground.lift(at, height * plan.ceiling_m()));
         dimmest = std::min(dimmest, gain);
         brightest = std::max(brightest, gain);
       }

@@ -32,6 +32,15 @@ void describe_base(ParamVisitor& v, RobotParams& robot) {
              About("sideways, at most").otherwise("`acceleration_mps2`"));
   });
   if (drive == Drive::unicycle) robot.base.side_speed = 0.0;
+  v.given("wheels", [&] {
+    v.map("wheels", "where the wheels touch the ground", [&] {
+      WheelStance& wheels = robot.wheels.emplace();
+      v.number("base_m", wheels.base_m, {0.01, 10.0},
+               About("from the front to the rear").required());
+      v.number("track_m", wheels.track_m, {0.01, 10.0},
+               About("from the left to the right").required());
+    });
+  });
 }
 
 /// A pair [low, high] in degrees, inside ±@p bound and holding more than one angle.

@@ -1,6 +1,7 @@
 #include "scene_content.hpp"
 
 #include "field_surfaces.hpp"
+#include "folded_building.hpp"
 #include "landmark_decals.hpp"
 
 #include <algorithm>
@@ -64,11 +65,17 @@ Eigen::Isometry3d level_frame(const Eigen::Vector3d& centre_w, bool on_ceiling) 
   return wMd;
 }
 
-Eigen::Isometry3d frame_of(const Clutter& clutter) {
+Eigen::Isometry3d paint_frame(const Eigen::Vector3d& centre, bool on_ceiling,
+                              const Ground& ground) {
+  if (ground.patches().empty()) return level_frame(centre, on_ceiling);
+  return painted_frame(ground, centre.head<2>(), centre.z(), on_ceiling);
+}
+
+Eigen::Isometry3d frame_of(const Clutter& clutter, const Ground& ground) {
   const Eigen::Isometry3d wMd =
       clutter.place == ClutterPlace::face
-          ? wall_mount(clutter.centre_w, clutter.normal_yaw)
-          : level_frame(clutter.centre_w, clutter.place == ClutterPlace::ceiling);
+          ? ground.hang(wall_mount(clutter.centre_w, clutter.normal_yaw))
+          : paint_frame(clutter.centre_w, clutter.place == ClutterPlace::ceiling, ground);
   return wMd * Eigen::AngleAxisd(clutter.turn, Eigen::Vector3d::UnitZ());
 }
 
@@ -86,21 +93,22 @@ SceneContent::SceneContent(const WorldMap& world, const Appearance& look, std::u
     : seed(noise_seed),
       light(static_cast<float>(look.light)),
       tile(derive_seed(look.seed, "noise tile")),
-      surfaces(building_surfaces(world.plan, look)) {
-  for (const Stripe& stripe : look.stripes) paint(stripe, world.plan.ceiling_m());
-  for (const Clutter& clutter : look.clutter) paint(clutter);
+      surfaces(world.ground.patches().empty() ? building_surfaces(world.plan, look)
+                                              : building_surfaces(world.plan, world.ground, look)) {
+  for (const Stripe& stripe : look.stripes) paint(stripe, world);
+  for (const Clutter& clutter : look.clutter) paint(clutter, world.ground);
   for (const Landmark& landmark : world.landmarks.all()) hang(landmark, look);
   if (world.field) lay_out(*world.field, world.plan, look);
   if (world.ceiling) hang(*world.ceiling, world.plan, look);
   if (look.light_kelvin != Appearance{}.light_kelvin) shine(lamp_gains(look.light_kelvin));
 }
 
-void SceneContent::paint(const Stripe& stripe, double ceiling_m) {
+void SceneContent::paint(const Stripe& stripe, const WorldMap& world) {
   const Eigen::Vector2d along = stripe.to - stripe.from;
   const Eigen::Vector2d middle = 0.5 * (stripe.from + stripe.to);
   StripeMark mark;
-  mark.wMd =
-      level_frame({middle.x(), middle.y(), stripe.on_ceiling ? ceiling_m : 0.0}, stripe.on_ceiling);
+  mark.wMd = paint_frame({middle.x(), middle.y(), stripe.on_ceiling ? world.plan.ceiling_m() : 0.0},
+                         stripe.on_ceiling, world.ground);
   const double turn = std::atan2(along.y(), along.x());
   mark.wMd =
       mark.wMd * Eigen::AngleAxisd(stripe.on_ceiling ? -turn : turn, Eigen::Vector3d::UnitZ());
@@ -111,13 +119,9 @@ void SceneContent::paint(const Stripe& stripe, double ceiling_m) {
   if (mark.surface != kNowhere) stripes.push_back(mark);
 }
 
-void SceneContent::paint(const Clutter& clutter) {
-  Decal mark{shape_of(clutter.kind),
-             frame_of(clutter),
-             clutter.size_m,
-             static_cast<float>(clutter.grey),
-             clutter.kind == ClutterKind::disc,
-             0};
+void SceneContent::paint(const Clutter& clutter, const Ground& ground) {
+  Decal mark{shape_of(clutter.kind),           frame_of(clutter, ground),         clutter.size_m,
+             static_cast<float>(clutter.grey), clutter.kind == ClutterKind::disc, 0};
   mark.surface = face_under(surfaces, mark.wMd, kOnSurface_m);
   if (mark.surface != kNowhere) decals.push_back(mark);
 }

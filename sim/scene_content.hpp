@@ -51,8 +51,8 @@ struct SceneContent {
  private:
   void hang(const CeilingGrid& grid, const FloorPlan& plan, const Appearance& look);
   void lay_out(const FieldMap& map, const FloorPlan& plan, const Appearance& look);
-  void paint(const Stripe& stripe, double ceiling_m);
-  void paint(const Clutter& clutter);
+  void paint(const Stripe& stripe, const WorldMap& world);
+  void paint(const Clutter& clutter, const Ground& ground);
   void hang(const Landmark& landmark, const Appearance& look);
   void shine(const std::array<float, 3>& gains);
 };

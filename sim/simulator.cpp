@@ -70,7 +70,7 @@ Simulator::Simulator(const RobotSetup& setup, const WorldMap& world,
                      std::uint64_t seed, const DisturbanceParams& disturbances)
     : setup_(setup),
       world_(sim::true_world(world, disturbances, seed)),
-      robot_(setup.robot, start, setup.initial_zoom_mm, derive_seed(seed, "robot"), world.ground),
+      robot_(setup.robot, start, setup.initial_zoom_mm, derive_seed(seed, "robot"), world_.ground),
       scene_(world_, appearance_of(appearance, world, disturbances, seed),
              derive_seed(seed, "scene")),
       motion_blur_(disturbances.motion_blur) {
@@ -93,7 +93,7 @@ void Simulator::disturb(const DisturbanceParams& disturbances, std::uint64_t see
     robot_.set_mounting_error(*rMr);
   if (disturbances.backlash) robot_.set_backlash(disturbances.backlash->width);
   if (disturbances.wheel_slip) robot_.set_wheel_slip(WheelSlip(*disturbances.wheel_slip, seed));
-  if (disturbances.light) light_.emplace(*disturbances.light, world_.plan, seed);
+  if (disturbances.light) light_.emplace(*disturbances.light, world_.plan, seed, world_.ground);
   if (disturbances.people) walkers_.emplace(*disturbances.people, world_.plan, bystander(), seed);
   if (disturbances.kidnapping) kidnapping_.emplace(*disturbances.kidnapping, seed);
   if (disturbances.latency) {
@@ -147,7 +147,18 @@ CameraModel Simulator::true_model(CameraId camera) const {
   return intrinsics;
 }
 
+/// From plan coordinates to where they stand in the world.
 std::vector<Person> Simulator::figures() const {
+  std::vector<Person> figures = figures_in_plan();
+  for (Person& figure : figures) {
+    const Eigen::Vector3d foot_w = world_.ground.lift(figure.position, 0.0);
+    figure.position = foot_w.head<2>();
+    figure.floor_m = foot_w.z();
+  }
+  return figures;
+}
+
+std::vector<Person> Simulator::figures_in_plan() const {
   std::vector<Person> figures = walkers_ ? walkers_->people() : std::vector<Person>{};
   if (setup_.robot.body_height_m <= 0.0) return figures;
   const Bystander robot = bystander();

@@ -15,34 +15,6 @@ Eigen::Vector3d lift(const Eigen::Vector2d& p, double z) {
   return {p.x(), p.y(), z};
 }
 
-/// Triangles of a simple polygon by ear clipping.
-std::vector<std::array<Eigen::Vector2d, 3>> triangulate(std::vector<Eigen::Vector2d> polygon) {
-  double area = 0.0;
-  for (std::size_t i = 0; i < polygon.size(); ++i)
-    area += cross(polygon[i], polygon[(i + 1) % polygon.size()]);
-  if (area < 0.0) std::reverse(polygon.begin(), polygon.end());
-
-  const auto is_ear = [&](std::size_t i) {
-    const std::size_t n = polygon.size();
-    const Eigen::Vector2d& a = polygon[(i + n - 1) % n];
-    const Eigen::Vector2d& b = polygon[i];
-    const Eigen::Vector2d& c = polygon[(i + 1) % n];
-    if (cross(b - a, c - b) <= 0.0) return false;
-    return std::none_of(polygon.begin(), polygon.end(), [&](const Eigen::Vector2d& p) {
-      return cross(b - a, p - a) > 0.0 && cross(c - b, p - b) > 0.0 && cross(a - c, p - c) > 0.0;
-    });
-  };
-  std::vector<std::array<Eigen::Vector2d, 3>> triangles;
-  while (polygon.size() >= 3) {
-    std::size_t ear = 0;
-    while (ear + 1 < polygon.size() && !is_ear(ear)) ++ear;
-    const std::size_t n = polygon.size();
-    triangles.push_back({polygon[(ear + n - 1) % n], polygon[ear], polygon[(ear + 1) % n]});
-    polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(ear));
-  }
-  return triangles;
-}
-
 Surface horizontal(double height, const Material& material) {
   return {{0.0, 0.0, height}, Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), {}, material};
 }
@@ -268,6 +240,33 @@ RayBox box_of_rays(const Intrinsics& intrinsics, int u0, int u1, int v0, int v1)
 }
 
 }  // namespace
+
+std::vector<std::array<Eigen::Vector2d, 3>> triangulate(std::vector<Eigen::Vector2d> polygon) {
+  double area = 0.0;
+  for (std::size_t i = 0; i < polygon.size(); ++i)
+    area += cross(polygon[i], polygon[(i + 1) % polygon.size()]);
+  if (area < 0.0) std::reverse(polygon.begin(), polygon.end());
+
+  const auto is_ear = [&](std::size_t i) {
+    const std::size_t n = polygon.size();
+    const Eigen::Vector2d& a = polygon[(i + n - 1) % n];
+    const Eigen::Vector2d& b = polygon[i];
+    const Eigen::Vector2d& c = polygon[(i + 1) % n];
+    if (cross(b - a, c - b) <= 0.0) return false;
+    return std::none_of(polygon.begin(), polygon.end(), [&](const Eigen::Vector2d& p) {
+      return cross(b - a, p - a) > 0.0 && cross(c - b, p - b) > 0.0 && cross(a - c, p - c) > 0.0;
+    });
+  };
+  std::vector<std::array<Eigen::Vector2d, 3>> triangles;
+  while (polygon.size() >= 3) {
+    std::size_t ear = 0;
+    while (ear + 1 < polygon.size() && !is_ear(ear)) ++ear;
+    const std::size_t n = polygon.size();
+    triangles.push_back({polygon[(ear + n - 1) % n], polygon[ear], polygon[(ear + 1) % n]});
+    polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(ear));
+  }
+  return triangles;
+}
 
 std::vector<Surface> building_surfaces(const FloorPlan& plan, const Appearance& appearance) {
   std::vector<Surface> surfaces;

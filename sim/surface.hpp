@@ -29,6 +29,9 @@ struct Surface {
 /// of the obstacles.
 std::vector<Surface> building_surfaces(const FloorPlan& plan, const Appearance& appearance);
 
+/// Triangles of a simple polygon, by ear clipping.
+std::vector<std::array<Eigen::Vector2d, 3>> triangulate(std::vector<Eigen::Vector2d> polygon);
+
 /// An upright board of its own, for a landmark that hangs on no face.
 Surface board_surface(const Eigen::Isometry3d& wMl, double half_width_m, const Material& material);
 

@@ -43,7 +43,8 @@ void remove(const MissingLandmarksParams& params, std::uint64_t seed,
 class WallPlaces {
  public:
   WallPlaces(const WorldMap& world, RandomStream& random) : world_(world), random_(random) {
-    for (const Landmark& landmark : world.landmarks.all()) taken_.push_back(landmark.centre_w());
+    for (const Landmark& landmark : world.landmarks.all())
+      taken_.push_back(world.ground.in_plan(landmark.centre_w()));
     for (const Wall& face : world.plan.faces())
       if (face.height_m > 1.5 && (face.b - face.a).norm() > 2.0 * kFromEdge)
         faces_.push_back(&face);
@@ -104,8 +105,13 @@ WorldMap true_world(const WorldMap& map, const DisturbanceParams& disturbances,
   std::vector<Landmark> landmarks = map.landmarks.all();
   if (disturbances.map_error) displace(*disturbances.map_error, seed, landmarks);
   if (disturbances.missing_landmarks) remove(*disturbances.missing_landmarks, seed, landmarks);
-  return {map.name,  map.plan,   map.ground, LandmarkMap(std::move(landmarks)),
-          map.field, map.ceiling};
+  const auto& ramps = disturbances.ramp_error;
+  return {map.name,
+          map.plan,
+          ramps ? map.ground.with_steeper_ramps(ramps->steeper) : map.ground,
+          LandmarkMap(std::move(landmarks)),
+          map.field,
+          map.ceiling};
 }
 
 Appearance true_appearance(const Appearance& appearance, const WorldMap& world,

@@ -1,6 +1,7 @@
 #include "vigia/core/world_map.hpp"
 
 #include "read_field_map.hpp"
+#include "read_ground.hpp"
 #include "read_landmark.hpp"
 #include "world_checks.hpp"
 
@@ -97,6 +98,7 @@ void describe(ParamVisitor& v, WorldMap& world) {
   v.each("obstacles", "solids on the floor", [&] { describe_obstacle(v, room, obstacles); });
   if (v.reader() != nullptr)
     world.plan = FloorPlan(room.outline, room.height_m, std::move(walls), std::move(obstacles));
+  v.given("ground", [&] { describe_ground(v, world.plan, world.ground); });
 
   std::vector<PlacedLandmark> placed;
   v.each("landmarks", "what the robot looks at; no two overlap or show the same code", [&] {
@@ -108,10 +110,20 @@ void describe(ParamVisitor& v, WorldMap& world) {
   });
   std::vector<Landmark> landmarks;
   landmarks.reserve(placed.size());
-  for (const PlacedLandmark& entry : placed) landmarks.push_back(entry.landmark);
+  for (const PlacedLandmark& entry : placed) {
+    landmarks.push_back(entry.landmark);
+    landmarks.back().wMl = world.ground.hang(entry.landmark.wMl);
+  }
   world.landmarks = LandmarkMap(std::move(landmarks));
-  v.given("field", [&] { describe_field(v, world); });
+  const auto require_flat = [&](const char* key) {
+    v.require(world.ground.flat(), key, "needs flat ground: leave `ground` out of this world");
+  };
+  v.given("field", [&] {
+    describe_field(v, world);
+    require_flat("field");
+  });
   v.given("ceiling", [&] {
+    require_flat("ceiling");
     CeilingGrid& grid = world.ceiling.emplace();
     v.map("ceiling", grid, "patches of one colour on a grid through the world's origin");
     grid.height_m = room.height_m;

@@ -4,7 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include <Eigen/Cholesky>
+
 #include "vigia/evaluation/metrics.hpp"
+#include "vigia/localization/spatial_pose.hpp"
 
 namespace vigia::evaluation {
 namespace {
@@ -25,6 +28,12 @@ int& count_of(LocalizerScore& score, localization::UpdateStatus status) {
   return score.rejected;
 }
 
+const double kRampPitch = from_deg(0.2);  // of the ground under a robot that does not stand level
+
+bool level(const Eigen::Isometry3d& wMr) {
+  return wMr.linear()(2, 2) > std::cos(kRampPitch);
+}
+
 }  // namespace
 
 EstimatorScorer::EstimatorScorer(EstimatorSetup setup) : setup_(std::move(setup)), bound_(setup_) {}
@@ -42,6 +51,43 @@ void EstimatorScorer::add(const mission::EstimatorTick& tick, std::size_t locali
   if (belief.status == BeliefStatus::lost)
     score_.lost_s += (tick.odometry.to - tick.odometry.from).seconds();
   if (tick.truth) add_errors(tick, belief, fused);
+  if (tick.truth && tick.truth->wMr && fused) add_errors_in_space(tick, belief, *fused);
+}
+
+void EstimatorScorer::add_errors_in_space(const mission::EstimatorTick& tick, const Belief& belief,
+                                          LookId look) {
+  const SpatialPose truth{*tick.truth->wMr, {}};
+  const SpatialPose on_map{setup_.on_ground.ground.place(belief.pose), {}};
+  const auto was = localization::floor_attitude(truth);
+  const auto seen = localization::floor_attitude(belief.in_space.value_or(on_map));
+  AttitudeError of{look, !level(truth.wMr), {}, 0.0};
+  of.error << seen.z_m - was.z_m, seen.pitch - was.pitch, seen.roll - was.roll;
+  if (belief.in_space) of.nees = of.error.dot(seen.covariance.ldlt().solve(of.error));
+  if (attitudes_.empty() || attitudes_.back().look != look) attitudes_.push_back(of);
+  attitudes_.back() = of;
+}
+
+AttitudeScore EstimatorScorer::attitude_score(bool ramp) const {
+  AttitudeScore score;
+  Eigen::Vector3d squared = Eigen::Vector3d::Zero();
+  Eigen::Vector3d largest = Eigen::Vector3d::Zero();
+  for (const AttitudeError& of : attitudes_) {
+    if (of.ramp != ramp) continue;
+    ++score.looks;
+    squared += of.error.cwiseAbs2();
+    largest = largest.cwiseMax(of.error.cwiseAbs());
+    score.nees_mean += of.nees;
+  }
+  const double n = std::max(1, score.looks);
+  const Eigen::Vector3d rms = (squared / n).cwiseSqrt();
+  score.z_rms_m = rms[0];
+  score.pitch_rms_rad = rms[1];
+  score.roll_rms_rad = rms[2];
+  score.z_max_m = largest[0];
+  score.pitch_max_rad = largest[1];
+  score.roll_max_rad = largest[2];
+  score.nees_mean /= n;
+  return score;
 }
 
 /// Counts what became of the observations; the look of the last one that was fused.
@@ -108,6 +154,8 @@ LocalizerScore EstimatorScorer::score() const {
   score.pcrlb_heading_final_rad = std::sqrt(2.0 * bound(2, 2) / kPi);
   score.loss = losses_.score();
   score.lost = losses_.episodes();
+  if (!setup_.on_ground.ground.flat())
+    score.in_space = SpaceScore{attitude_score(false), attitude_score(true)};
   return score;
 }
 

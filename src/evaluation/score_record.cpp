@@ -43,6 +43,19 @@ LossScore loss_from(const Json& json) {
   return s;
 }
 
+AttitudeScore attitude_from(const Json& json) {
+  AttitudeScore s;
+  json.at("looks").get_to(s.looks);
+  json.at("z_rms_m").get_to(s.z_rms_m);
+  json.at("z_max_m").get_to(s.z_max_m);
+  json.at("pitch_rms_rad").get_to(s.pitch_rms_rad);
+  json.at("pitch_max_rad").get_to(s.pitch_max_rad);
+  json.at("roll_rms_rad").get_to(s.roll_rms_rad);
+  json.at("roll_max_rad").get_to(s.roll_max_rad);
+  json.at("nees_mean").get_to(s.nees_mean);
+  return s;
+}
+
 LocalizerScore localizer_from(const Json& json) {
   LocalizerScore s;
   json.at("position_final_m").get_to(s.position_final_m);
@@ -62,6 +75,9 @@ LocalizerScore localizer_from(const Json& json) {
     s.lost.push_back({seconds_from(e.at("said_s")), seconds_from(e.at("passed_half_metre_s")),
                       seconds_from(e.at("ended_s")), e.at("groundless").get<bool>()});
   s.loss = loss_from(json.at("loss"));
+  if (json.contains("in_space"))
+    s.in_space = SpaceScore{attitude_from(json.at("in_space").at("level")),
+                            attitude_from(json.at("in_space").at("ramps"))};
   for (const auto& l : json.at("looks"))
     s.looks.push_back({l.at(0).get<LookId>(), l.at(1), l.at(2), l.at(3)});
   return s;

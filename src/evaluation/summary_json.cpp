@@ -27,6 +27,17 @@ Json calibration_json(const LossScore& s) {
   return bins;
 }
 
+Json attitude_json(const AttitudeScore& s) {
+  return {{"looks", s.looks},
+          {"z_rms_m", s.z_rms_m},
+          {"z_max_m", s.z_max_m},
+          {"pitch_rms_rad", s.pitch_rms_rad},
+          {"pitch_max_rad", s.pitch_max_rad},
+          {"roll_rms_rad", s.roll_rms_rad},
+          {"roll_max_rad", s.roll_max_rad},
+          {"nees_mean", s.nees_mean}};
+}
+
 }  // namespace
 
 Json loss_json(const LossScore& s) {
@@ -62,6 +73,9 @@ Json localizer_json(const LocalizerScore& s) {
             {"pcrlb_heading_final_rad", s.pcrlb_heading_final_rad},
             {"lost", Json::array()},
             {"loss", loss_json(s.loss)}};
+  if (s.in_space)
+    json["in_space"] = {{"level", attitude_json(s.in_space->level)},
+                        {"ramps", attitude_json(s.in_space->ramps)}};
   for (const auto& episode : s.lost) json["lost"].push_back(episode_json(episode));
   return json;
 }

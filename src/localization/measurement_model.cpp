@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "vigia/core/line_of_sight.hpp"
 #include "vigia/localization/chi_square.hpp"
 
 namespace vigia::localization {
@@ -57,7 +58,7 @@ Eigen::Array3d MeasurementModel::look_biases(CameraId camera) const {
 }
 
 bool MeasurementModel::hides(const Eigen::Vector3d& from_w, const Eigen::Vector3d& to_w) const {
-  return plan_ && !plan_->line_of_sight(from_w, to_w);
+  return plan_ && !line_of_sight(*plan_, on_ground_.ground, from_w, to_w);
 }
 
 double MeasurementModel::gate(int dof) const {

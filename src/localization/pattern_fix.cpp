@@ -61,7 +61,7 @@ void PatternFixLocalizer::lose() {
 }
 
 void PatternFixLocalizer::believe(const SpatialPose& pose, Stamp stamp) {
-  const PlanarEstimate planar = seen_from_above(pose);
+  const PlanarEstimate planar = seen_from_above(pose, on_ground_.ground);
   belief_.stamp = stamp;
   belief_.pose = planar.pose;
   belief_.covariance = planar.covariance;
@@ -74,7 +74,8 @@ void PatternFixLocalizer::believe(const SpatialPose& pose, Stamp stamp) {
 void PatternFixLocalizer::predict(const OdometryIncrement& increment) {
   // An image ahead of the odometry has moved the belief into this increment already.
   if (belief_.stamp < increment.to)
-    believe(moved_by(*belief_.in_space, rest_of(increment, belief_.stamp), params_.odometry),
+    believe(moved_by(*belief_.in_space, rest_of(increment, belief_.stamp), params_.odometry,
+                     on_ground_.ground),
             increment.to);
   history_.push_back(increment);
   const Stamp oldest = increment.to - Duration::from_seconds(params_.history_s);
@@ -115,7 +116,7 @@ UpdateResult PatternFixLocalizer::process(const PointsObservation& observation) 
   Stamp stamp = shot.stamp;
   for (const OdometryIncrement& u : history_) {
     if (u.to <= shot.stamp) continue;
-    pose = moved_by(pose, rest_of(u, shot.stamp), params_.odometry);
+    pose = moved_by(pose, rest_of(u, shot.stamp), params_.odometry, on_ground_.ground);
     stamp = u.to;
   }
   belief_.status = BeliefStatus::tracking;

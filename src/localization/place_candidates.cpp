@@ -142,10 +142,11 @@ class PlaceCandidates::Ballot {
 
 PlaceCandidates::PlaceCandidates(LandmarkMap map, const RigOnGround& on_ground)
     : map_(std::move(map)), on_ground_(on_ground) {
-  const Eigen::Matrix3d wRg = on_ground.ground.place({}).linear();
   for (const Landmark& landmark : map_.all()) {
     marks_.push_back({on_ground.ground.in_plan(landmark.centre_w()),
-                      wRg.transpose() * landmark.normal_w(), disc_radius(landmark).value_or(0.0)});
+                      on_ground.ground.frame_under(landmark.centre_w()).linear().transpose() *
+                          landmark.normal_w(),
+                      disc_radius(landmark).value_or(0.0)});
     const double radius = marks_.back().radius_m;
     if (radius > 0.0 && std::find(radii_.begin(), radii_.end(), radius) == radii_.end())
       radii_.push_back(radius);

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "vigia/core/line_of_sight.hpp"
 #include "vigia/core/plane_geometry.hpp"
 #include "vigia/localization/chi_square.hpp"
 
@@ -335,7 +336,8 @@ bool Relocalizer::plausible(const Explained& explained, const Clue& clue, const 
   const Landmark& landmark = model_.map().all()[explained.as.landmark];
   const Shot& shot = shot_of(explained.match);
   const Eigen::Isometry3d wMc = model_.on_ground().wMc(shot.camera, shot.head, pose);
-  if (!plan_.line_of_sight(wMc.translation(), landmark.centre_w())) return false;
+  if (!line_of_sight(plan_, model_.on_ground().ground, wMc.translation(), landmark.centre_w()))
+    return false;
   if (!disc_radius(landmark)) return true;
   const auto image = disc_image(landmark, pinhole(shot), wMc);
   return image && std::abs(image->b / image->a - clue.aspect) < params_.aspect_tolerance;
@@ -392,7 +394,7 @@ bool Relocalizer::should_be_seen(const Landmark& landmark, const Pose2& pose,
   if (!image || image->a < least) return false;
   const double margin = 2.0 * image->a;
   return in_image(pinhole(view), {image->u, image->v}, margin) &&
-         plan_.line_of_sight(wMc.translation(), landmark.centre_w());
+         line_of_sight(plan_, model_.on_ground().ground, wMc.translation(), landmark.centre_w());
 }
 
 std::size_t Relocalizer::landmarks_of(const std::vector<Explained>& explained) {

@@ -20,6 +20,18 @@ Eigen::RowVector3d heading_by_turn(const Eigen::Vector3d& f) {
   return -dtheta_df * skew(f);  // df = δφ × f
 }
 
+PlanarEstimate seen_from_above_floor(const SpatialPose& pose) {
+  const Eigen::Vector3d front = pose.wMr.linear().col(0);
+  PlanarEstimate planar;
+  planar.pose = {pose.wMr.translation().x(), pose.wMr.translation().y(),
+                 std::atan2(front.y(), front.x())};
+  Eigen::Matrix<double, 3, 6> J = Eigen::Matrix<double, 3, 6>::Zero();
+  J.topLeftCorner<2, 2>().setIdentity();
+  J.block<1, 3>(2, 3) = heading_by_turn(front);
+  planar.covariance = J * pose.covariance * J.transpose();
+  return planar;
+}
+
 }  // namespace
 
 SpatialPose robot_in_space(const Landmark& landmark, const FittedPose& fit, const Shot& shot,
@@ -73,21 +85,22 @@ FloorAttitude floor_attitude(const SpatialPose& pose) {
   return floor;
 }
 
-PlanarEstimate seen_from_above(const SpatialPose& pose) {
-  const Eigen::Vector3d front = pose.wMr.linear().col(0);
-  PlanarEstimate planar;
-  planar.pose = {pose.wMr.translation().x(), pose.wMr.translation().y(),
-                 std::atan2(front.y(), front.x())};
-  Eigen::Matrix<double, 3, 6> J = Eigen::Matrix<double, 3, 6>::Zero();
-  J.topLeftCorner<2, 2>().setIdentity();
-  J.block<1, 3>(2, 3) = heading_by_turn(front);
-  planar.covariance = J * pose.covariance * J.transpose();
-  return planar;
+PlanarEstimate seen_from_above(const SpatialPose& pose, const Ground& ground) {
+  if (ground.flat()) return seen_from_above_floor(pose);
+  const Eigen::Isometry3d gMw = ground.frame_under(pose.wMr.translation()).inverse(Eigen::Isometry);
+  Matrix6 turn = Matrix6::Zero();
+  turn.topLeftCorner<3, 3>() = gMw.linear();
+  turn.bottomRightCorner<3, 3>() = gMw.linear();
+  return seen_from_above_floor({gMw * pose.wMr, turn * pose.covariance * turn.transpose()});
 }
 
 SpatialPose moved_by(const SpatialPose& pose, const OdometryIncrement& u,
-                     const OdometryNoise& noise) {
-  const Eigen::Isometry3d step = to_isometry(move(Pose2{}, u));
+                     const OdometryNoise& noise, const Ground& ground) {
+  Eigen::Isometry3d step = to_isometry(move(Pose2{}, u));
+  if (!ground.flat()) {
+    const Pose2 from = seen_from_above(pose, ground).pose;
+    step = ground.place(from).inverse(Eigen::Isometry) * ground.place(move(from, u));
+  }
   SpatialPose result;
   result.wMr = pose.wMr * step;
   Matrix6 F = Matrix6::Identity();

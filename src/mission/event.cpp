@@ -48,6 +48,8 @@ std::string_view to_string(EventKind kind) {
       return "refused";
     case EventKind::via_missed:
       return "via_missed";
+    case EventKind::ground_off:
+      return "ground_off";
     case EventKind::kidnapped:
       return "kidnapped";
     case EventKind::arrived:

@@ -37,6 +37,7 @@ Belief RecentMotion::belief_at(Stamp stamp, const Belief& now) const {
                                  [stamp](const Place& place) { return place.stamp >= stamp; });
   Belief belief = now;
   belief.stamp = then->stamp;
+  belief.in_space.reset();
   belief.pose = compose(now.pose, compose(inverse(last.oMr), then->oMr));
   return belief;
 }

@@ -71,6 +71,7 @@ Loop::Loop(const MissionSetup& setup, std::uint64_t seed, const std::vector<List
       cameras_(make_feeds(setup, rig_, simulator_.latency(), simulator_.processing())),
       attention_(make_attention(setup, rig_, seed, log_)),
       rejections_(log_, rig_),
+      ground_monitor_(log_, setup.world.ground),
       recovery_(make_recovery(setup, rig_, cameras_, log_)),
       ring_doubt_(setup.world.plan, ring_model(setup)),
       navigator_(setup, log_),
@@ -129,6 +130,7 @@ void Loop::tick() {
   tick_.estimator.observations = observe(deliveries);
   tick_.estimator.localizers = update(tick_.estimator.observations);
   judge(readings, deliveries);
+  ground_monitor_.judge(tick_.estimator);
   const Commands commands = recovering_ ? recover(readings, deliveries) : proceed(readings);
   simulator_.robot().command(commands.base, commands.head);
   complete_tick(readings, deliveries, commands);
@@ -154,6 +156,7 @@ void Loop::advance() {
   tick_.estimator.truth->pose_before = robot.truth().pose;
   simulator_.advance(dt_);
   tick_.estimator.truth->pose = robot.truth().pose;
+  if (!setup_.world.ground.flat()) tick_.estimator.truth->wMr = robot.wMr();
   tick_.estimator.now = tick_.estimator.now + dt_;
   log_.set_time(tick_.estimator.now);
 }

@@ -3,6 +3,7 @@
 #include "attention.hpp"
 #include "camera_feed.hpp"
 #include "event_log.hpp"
+#include "ground_monitor.hpp"
 #include "late_frames.hpp"
 #include "navigator.hpp"
 #include "recovery.hpp"
@@ -61,6 +62,7 @@ class Loop {
   std::vector<std::unique_ptr<localization::Localizer>> localizers_;
   std::unique_ptr<Attention> attention_;
   UndirectedRejections rejections_;
+  GroundMonitor ground_monitor_;
   std::unique_ptr<Recovery> recovery_;
   RingDoubt ring_doubt_;
   Navigator navigator_;

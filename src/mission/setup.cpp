@@ -296,8 +296,9 @@ void require_in_time(ParamVisitor& v, const MissionSetup& setup) {
 void require_below_ceiling(ParamVisitor& v, const MissionSetup& setup) {
   const double ceiling_m = setup.world.plan.ceiling_m();
   for (const sim::CameraSetup& camera : setup.robot.cameras) {
+    const Ground& ground = setup.world.ground;
     const double height_m =
-        (setup.world.ground.place(setup.start) * camera.camera.rMc({})).translation().z();
+        ground.in_plan((ground.place(setup.start) * camera.camera.rMc({})).translation()).z();
     v.require(height_m < ceiling_m, "robot",
               fmt::format("camera {} is {:g} m above the floor, must be below the room's ceiling "
                           "(room.height_m {:g})",
@@ -365,8 +366,14 @@ void describe(ParamVisitor& v, MissionSetup& setup) {
   v.folder_name("name", setup.name, About("its run folder is named after it").required());
   v.map_or_file("world", "the building", [&] { describe_world(v, setup); });
   v.map_or_file("robot", "base, head and camera", [&] { describe(v, setup.robot); });
-  v.map("disturbances", setup.disturbances,
-        "what the true world does and the robot's model leaves out");
+  setup.world.ground = setup.world.ground.under(setup.robot.robot.stance());
+  v.map("disturbances", "what the true world does and the robot's model leaves out", [&] {
+    describe(v, setup.disturbances);
+    v.where(!setup.world.ground.patches().empty(), "the world has `ground`", [&] {
+      v.toggle("ramp_error", setup.disturbances.ramp_error, false,
+               "ramps that are not as the map has them");
+    });
+  });
   describe_run(v, setup);
   v.map("start", "where the drive begins", [&] { describe_start(v, setup); });
   v.name("tracker", setup.tracker, tracking::ellipse_tracker_names(),

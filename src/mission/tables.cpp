@@ -148,9 +148,15 @@ void Tables::tick(const Tick& tick) {
   line.push_back('\n');
   ticks_.write(view(line));
 
-  truth_.write(tum_line(estimator.now, tick.truth.pose, ground_));
-  for (std::size_t i = 0; i < localizers_.size(); ++i)
-    localizers_[i].write(tum_line(estimator.now, estimator.localizers[i].belief->pose, ground_));
+  const bool in_space = estimator.truth && estimator.truth->wMr;
+  truth_.write(in_space ? tum_line(estimator.now, *estimator.truth->wMr)
+                        : tum_line(estimator.now, tick.truth.pose, ground_));
+  for (std::size_t i = 0; i < localizers_.size(); ++i) {
+    const Belief& belief = *estimator.localizers[i].belief;
+    localizers_[i].write(in_space && belief.in_space
+                             ? tum_line(estimator.now, belief.in_space->wMr)
+                             : tum_line(estimator.now, belief.pose, ground_));
+  }
 
   const TickTiming& t = tick.timing;
   timings_.push_back(t);

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "vigia/core/belief_on_ground.hpp"
 #include "vigia/core/overloaded.hpp"
 #include "vigia/localization/disc_model.hpp"
 #include "vigia/localization/points_model.hpp"
@@ -29,7 +30,8 @@ std::unique_ptr<tracking::PointTracker> tracker_of(const std::string& name,
 std::optional<tracking::PointsPrediction> predict_points(
     const Shot& shot, const Belief& belief, const Landmark& landmark, const RigOnGround& on_ground,
     const tracking::EllipsePrediction& outline) {
-  const Eigen::Isometry3d wMc = on_ground.wMc(shot.camera, shot.head, belief.pose);
+  const Eigen::Isometry3d wMc =
+      believed_wMr(belief, on_ground.ground) * on_ground.rig.at(shot.camera).rMc(shot.head);
   const Eigen::Isometry3d cMl = wMc.inverse(Eigen::Isometry) * landmark.wMl;
   tracking::PointsPrediction prediction;
   prediction.landmark = landmark.id;
@@ -143,7 +145,8 @@ LandmarkEye::Sighting LandmarkEye::follow(const Capture& capture, const Belief& 
 std::optional<tracking::EllipsePrediction> LandmarkEye::predict(const Shot& shot,
                                                                 const Belief& belief,
                                                                 const Landmark& landmark) const {
-  const auto image = expected_image(shot, belief.pose, landmark, on_ground_);
+  const auto image =
+      expected_image(shot, believed_wMr(belief, on_ground_.ground), landmark, on_ground_.rig);
   const auto model =
       localization::predict_disc(outline_of(landmark), shot, on_ground_, belief.pose, {});
   if (!image || !model) return std::nullopt;
@@ -182,7 +185,8 @@ tracking::EllipseFeature LandmarkEye::find_disc(
 
 void LandmarkEye::settle(const Belief& then) {
   if (target_.landmark == nullptr) return;
-  const auto image = expected_image(target_.shot, then.pose, *target_.landmark, on_ground_);
+  const auto image = expected_image(target_.shot, believed_wMr(then, on_ground_.ground),
+                                    *target_.landmark, on_ground_.rig);
   if (image) target_.settled = Eigen::Vector2d(image->u, image->v);
 }
 

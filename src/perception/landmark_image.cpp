@@ -10,7 +10,12 @@ Landmark outline_of(const Landmark& landmark) {
 
 std::optional<Ellipse> expected_image(const Shot& shot, const Pose2& pose, const Landmark& landmark,
                                       const RigOnGround& on_ground) {
-  const Eigen::Isometry3d wMc = on_ground.wMc(shot.camera, shot.head, pose);
+  return expected_image(shot, on_ground.ground.place(pose), landmark, on_ground.rig);
+}
+
+std::optional<Ellipse> expected_image(const Shot& shot, const Eigen::Isometry3d& wMr,
+                                      const Landmark& landmark, const Rig& rig) {
+  const Eigen::Isometry3d wMc = wMr * rig.at(shot.camera).rMc(shot.head);
   return localization::disc_image(outline_of(landmark), pinhole(shot), wMc);
 }
 

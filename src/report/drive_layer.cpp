@@ -53,7 +53,7 @@ void draw_sight_lines(const Sheet& sheet, const MapView& view, const MapDrive& d
     const Landmark* landmark = drive.world.landmarks.find(look.landmark);
     if (landmark == nullptr) continue;
     const Colour colour = landmark_colour(drive.world.landmarks, look.landmark);
-    sheet.line(view(look.from), view(landmark->centre_w().head<2>()),
+    sheet.line(view(look.from), view(drive.world.in_plan(*landmark)),
                {colour.with_alpha(0.8), style.sight_width,
                 look.fused ? std::vector<double>{} : style.unfused_dashes});
   }
@@ -112,13 +112,14 @@ void draw_robot(const Sheet& sheet, const MapView& view, const Pose2& pose, doub
 void draw_landmarks(const Sheet& sheet, const MapView& view, const MapDrive& drive,
                     LabelPlacer& labels) {
   for (const Landmark& landmark : drive.world.landmarks.all()) {
-    draw_landmark(sheet, view, landmark, landmark_colour(drive.world.landmarks, landmark.id));
-    block_disc(labels, view(landmark.centre_w().head<2>()), 9.0);
+    draw_landmark(sheet, view, drive.world, landmark,
+                  landmark_colour(drive.world.landmarks, landmark.id));
+    block_disc(labels, view(drive.world.in_plan(landmark)), 9.0);
   }
   for (const Landmark& landmark : drive.world.landmarks.all()) {
     const Eigen::Vector2d behind(-landmark.normal_w().x(), landmark.normal_w().y());
     const double gap = 4.0 + std::max(7.0, disc_radius(landmark).value_or(0.0) * view.scale);
-    draw_tag(sheet, labels, "L" + std::to_string(landmark.id), view(landmark.centre_w().head<2>()),
+    draw_tag(sheet, labels, "L" + std::to_string(landmark.id), view(drive.world.in_plan(landmark)),
              gap, behind, {17.0, true}, palette::kInk, kHalo);
   }
 }

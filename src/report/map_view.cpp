@@ -136,10 +136,10 @@ void draw_axes(const Sheet& sheet, const MapView& view) {
   draw_scale_bar(sheet, {box.right(), box.bottom() + 38.0}, step, view.scale);
 }
 
-void draw_landmark(const Sheet& sheet, const MapView& view, const Landmark& landmark,
-                   Colour colour) {
+void draw_landmark(const Sheet& sheet, const MapView& view, const WorldMap& world,
+                   const Landmark& landmark, Colour colour) {
   constexpr double kSmallest = 7.0;
-  const Eigen::Vector2d centre = view(landmark.centre_w().head<2>());
+  const Eigen::Vector2d centre = view(world.in_plan(landmark));
   const Eigen::Vector2d normal(landmark.normal_w().x(), -landmark.normal_w().y());
   const double radius = std::max(kSmallest, disc_radius(landmark).value_or(0.0) * view.scale);
   sheet.line(centre, centre + (radius + 9.0) * normal, {palette::kInk, 2.0});

@@ -38,7 +38,7 @@ void draw_floor(const Sheet& sheet, const MapView& view, const FloorPlan& plan);
 void draw_axes(const Sheet& sheet, const MapView& view);
 
 /// The disc of a landmark on its wall with a tick along its normal.
-void draw_landmark(const Sheet& sheet, const MapView& view, const Landmark& landmark,
-                   Colour colour);
+void draw_landmark(const Sheet& sheet, const MapView& view, const WorldMap& world,
+                   const Landmark& landmark, Colour colour);
 
 }  // namespace vigia::report

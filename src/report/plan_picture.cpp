@@ -46,7 +46,7 @@ void draw_sight_lines(const Sheet& sheet, const MapView& view, const PlanPicture
     if (landmark == nullptr) continue;
     const Colour colour = landmark_colour(plan.world.landmarks, landmark->id);
     for (const Eigen::Vector2d& p : area.positions)
-      sheet.line(view(p), view(landmark->centre_w().head<2>()), {colour.with_alpha(0.85), 1.8});
+      sheet.line(view(p), view(plan.world.in_plan(*landmark)), {colour.with_alpha(0.85), 1.8});
   }
 }
 
@@ -106,7 +106,7 @@ void avoid_drawing(LabelPlacer& labels, const MapView& view, const PlanPicture& 
     if (landmark == nullptr) continue;
     for (const Eigen::Vector2d& p : area.positions)
       for (double t = 0.0; t < 1.0; t += 0.04)
-        labels.avoid(view(Eigen::Vector2d((1.0 - t) * p + t * landmark->centre_w().head<2>())));
+        labels.avoid(view(Eigen::Vector2d((1.0 - t) * p + t * plan.world.in_plan(*landmark))));
   }
 }
 
@@ -114,11 +114,12 @@ void draw_labels(const Sheet& sheet, const MapView& view, const PlanPicture& pla
   LabelPlacer labels(view.box());
   avoid_drawing(labels, view, plan);
   for (const Landmark& landmark : plan.world.landmarks.all()) {
-    draw_landmark(sheet, view, landmark, landmark_colour(plan.world.landmarks, landmark.id));
-    block_disc(labels, view(landmark.centre_w().head<2>()), 10.0);
+    draw_landmark(sheet, view, plan.world, landmark,
+                  landmark_colour(plan.world.landmarks, landmark.id));
+    block_disc(labels, view(plan.world.in_plan(landmark)), 10.0);
   }
   for (const Landmark& landmark : plan.world.landmarks.all())
-    draw_tag(sheet, labels, "L" + std::to_string(landmark.id), view(landmark.centre_w().head<2>()),
+    draw_tag(sheet, labels, "L" + std::to_string(landmark.id), view(plan.world.in_plan(landmark)),
              12.0, {-landmark.normal_w().x(), landmark.normal_w().y()}, {18.0, true}, palette::kInk,
              kPlanHalo);
   const double start = plan.path.heading(0.0);

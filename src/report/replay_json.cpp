@@ -72,14 +72,15 @@ std::string_view kind_of(const Landmark& landmark) {
   return std::visit(Name{}, landmark.shape);
 }
 
-Json landmarks_json(const LandmarkMap& landmarks) {
+Json landmarks_json(const WorldMap& world) {
   Json list = Json::array();
-  for (const auto& landmark : landmarks.all()) {
+  for (const auto& landmark : world.landmarks.all()) {
+    const Eigen::Vector2d centre = world.in_plan(landmark);
     const Eigen::Vector3d normal = landmark.normal_w();
     list.push_back({{"id", landmark.id},
                     {"kind", kind_of(landmark)},
-                    {"x", rounded(landmark.centre_w().x())},
-                    {"y", rounded(landmark.centre_w().y())},
+                    {"x", rounded(centre.x())},
+                    {"y", rounded(centre.y())},
                     {"nx", rounded(normal.x())},
                     {"ny", rounded(normal.y())}});
   }
@@ -131,7 +132,7 @@ Json world_json(const WorldMap& world) {
   return {{"outline", points(world.plan.outline())},
           {"walls", walls},
           {"obstacles", obstacles},
-          {"landmarks", landmarks_json(world.landmarks)},
+          {"landmarks", landmarks_json(world)},
           {"field", world.field ? field_json(*world.field) : Json(nullptr)}};
 }
 

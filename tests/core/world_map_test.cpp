@@ -90,6 +90,32 @@ TEST(WorldMap, ResolvedAndWrittenItReadsBackTheSame) {
   EXPECT_TRUE(same_tree(*root, *again));
 }
 
+/// Two rooms of 4 × 3 m and a ramp of 0.1 between them, 5 m long and 1 m wide.
+constexpr const char* kRamp =
+    "version: 1\nroom:\n  outline_m: [[0, 0], [4, 0], [4, 1], [9, 1], [9, 0], [13, 0], [13, 3], "
+    "[9, "
+    "3], [9, 2], [4, 2], [4, 3], [0, 3]]\nground:\n"
+    "  - {polygon_m: [[0, 0], [4, 0], [4, 3], [0, 3]]}\n"
+    "  - {polygon_m: [[4, 1], [9, 1], [9, 2], [4, 2]], grade: 0.1, uphill_deg: 0}\n"
+    "  - {polygon_m: [[9, 0], [13, 0], [13, 3], [9, 3]]}\n";
+
+TEST(WorldMap, HasGroundOfPiecesThatRampsJoinAndLandmarksThatHangAboveIt) {
+  const WorldMap world = read_world(
+      std::string(kRamp) +
+      "landmarks:\n"
+      "  - {id: 1, kind: disc, centre_m: [6.5, 1, 2.1], normal_deg: 90, radius_m: 0.1}\n"
+      "  - {id: 2, kind: disc, centre_m: [13, 2, 2.1], normal_deg: 180, radius_m: 0.1}\n");
+  const double slope = std::atan(0.1);
+  ASSERT_EQ(world.ground.patches().size(), 3U);
+  EXPECT_NEAR(world.ground.place({11.0, 2.0, 0.0}).translation().z(), 5.0 * std::sin(slope), 1e-12);
+  const Eigen::Vector3d on_ramp = world.landmarks.find(1)->centre_w();
+  EXPECT_NEAR(on_ramp.x(), 4.0 + 2.5 * std::cos(slope), 1e-12);
+  EXPECT_NEAR(on_ramp.z(), 2.1 + 2.5 * std::sin(slope), 1e-12);
+  EXPECT_LT((world.in_plan(*world.landmarks.find(1)) - Eigen::Vector2d(6.5, 1.0)).norm(), 1e-9);
+  EXPECT_LT((world.in_plan(*world.landmarks.find(2)) - Eigen::Vector2d(13.0, 2.0)).norm(), 1e-9);
+  EXPECT_NEAR(world.landmarks.find(2)->normal_w().x(), -1.0, 1e-12);
+}
+
 class WorldMistake : public testing::TestWithParam<Mistake> {};
 
 TEST_P(WorldMistake, IsReportedWithItsPlace) {
@@ -133,6 +159,37 @@ INSTANTIATE_TEST_SUITE_P(
              "19: room.outline_m: the polygon crosses itself: side 1 meets side 2"),
         room("{outline_m: [[0, 0], [2, 0], [2, 2]], width_m: 3}",
              "45: unknown key 'width_m' in room (known: height_m, outline_m)")));
+
+/// kRamp with a piece of its text replaced.
+Mistake ramp(const std::string& from, const std::string& to, const std::string& message) {
+  std::string text = kRamp;
+  text.replace(text.find(from), from.size(), to);
+  return {text, "w.yaml:" + message};
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OfTheGround, WorldMistake,
+    testing::Values(
+        ramp(
+            ", [9, 3]]}", "]}",
+            "4:9: ground: the pieces must cover the room once: they have 23.000000 m² and the room "
+            "29.000000 m²"),
+        ramp("uphill_deg: 0", "uphill_deg: 90",
+             "4:9: ground: piece 2 of the ground shares no level edge with an earlier one to be "
+             "hinged along"),
+        ramp("[4, 1], [9, 1], [9, 2], [4, 2]]", "[4, 1], [9, 1], [9, 2], [6, 1.5]]",
+             "4:9: ground: piece 2 of the ground is not convex"),
+        ramp("ground:",
+             "obstacles:\n  - {polygon_m: [[3.5, 1.2], [4.5, 1.2], [4.5, 1.6], [3.5, "
+             "1.6]], height_m: 1}\nground:",
+             "6:9: ground: obstacle 1 stands across a fold"),
+        ramp("grade: 0.1,", "grade: 0.5,",
+             "6:62: ground[1].grade: found '0.5', must lie in [0, 0.25]"),
+        Mistake{"version: 1\nroom: {width_m: 4, depth_m: 4}\nground:\n"
+                "  - {polygon_m: [[0, 0], [4, 0], [4, 2], [0, 2]]}\n"
+                "  - {polygon_m: [[0, 2], [2, 2], [2, 4], [0, 4]], grade: 0.1, uphill_deg: 90}\n"
+                "  - {polygon_m: [[2, 2], [4, 2], [4, 4], [2, 4]]}\n",
+                "w.yaml:4:3: ground: a step of 0.005 m at [2, 2.05] has no wall along it"}));
 
 INSTANTIATE_TEST_SUITE_P(
     OfAWallOrObstacle, WorldMistake,

@@ -197,6 +197,7 @@ TEST(ScoreRecord, ComesBackEqualToTheBit) {
   ekf.loss.brier = 0.1 + 0.7;
   ekf.loss.calibration[7] = {5, 0.1 + 0.6, 3};
   ekf.looks = {{3, 0.1, 0.2, 0.3}, {4, 1e300, -0.0, 0.7}};
+  ekf.in_space = SpaceScore{{3, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7}, {2, 1.0 / 9.0}};
   score.perception.looks = 22;
   score.recovery = {2, 1, 0.7};
   const std::string record = score_record(score);
@@ -210,6 +211,8 @@ TEST(ScoreRecord, ComesBackEqualToTheBit) {
   EXPECT_EQ(back.localizers.at("ekf").lost[1].passed_s, 2.25);
   EXPECT_FALSE(back.localizers.at("ekf").lost[0].ended_s);
   EXPECT_EQ(back.localizers.at("ekf").loss.calibration[7].mean_probability, 0.1 + 0.6);
+  EXPECT_EQ(back.localizers.at("ekf").in_space->ramps.z_rms_m, 1.0 / 9.0);
+  EXPECT_EQ(back.localizers.at("ekf").in_space->level.nees_mean, 0.7);
   EXPECT_EQ(back.recovery.recovering_s, 0.7);
 }
 

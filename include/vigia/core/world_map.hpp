@@ -18,16 +18,21 @@ class ParamVisitor;
 /// patches on its ceiling.
 struct WorldMap {
   std::string name = "world";
-  FloorPlan plan;
+  FloorPlan plan;  ///< in plan coordinates, heights above the ground
   Ground ground;
   LandmarkMap landmarks;
   std::optional<FieldMap> field = std::nullopt;
   std::optional<CeilingGrid> ceiling = std::nullopt;
+
+  /// Where a landmark hangs in the plan.
+  Eigen::Vector2d in_plan(const Landmark& landmark) const {
+    return ground.in_plan(landmark.centre_w()).head<2>();
+  }
 };
 
-/// The keys `name`, `room`, `walls`, `obstacles`, `landmarks`, `field`, `ceiling` of a world file.
-/// A reader throws InputError: a landmark inside a wall or outside the room, off every face,
-/// overlapping ids, …
+/// The keys `name`, `room`, `walls`, `obstacles`, `ground`, `landmarks`, `field`, `ceiling` of a
+/// world file. A reader throws InputError: a landmark inside a wall or outside the room, off every
+/// face, overlapping ids, …
 void describe(ParamVisitor& v, WorldMap& world);
 
 /// Reads them; the reader stays the caller's to finish.

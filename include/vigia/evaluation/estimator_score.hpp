@@ -19,6 +19,26 @@ struct LookScore {
   double bound_m2 = 0.0;          ///< trace of the bound's position covariance
 };
 
+/// Errors of height and attitude at the last fused reading of each look.
+struct AttitudeScore {
+  int looks = 0;
+  double z_rms_m = 0.0;
+  double z_max_m = 0.0;
+  double pitch_rms_rad = 0.0;
+  double pitch_max_rad = 0.0;
+  double roll_rms_rad = 0.0;
+  double roll_max_rad = 0.0;
+  double nees_mean =
+      0.0;  ///< of (z, pitch, roll), 3 degrees of freedom; 0: no covariance of its own
+};
+
+/// What a localizer says of the pose in space on ground that is not flat: from the landmark alone
+/// where it measures that, else the place on the map's ground where it believes to stand.
+struct SpaceScore {
+  AttitudeScore level;  ///< where the robot truly stands level
+  AttitudeScore ramps;
+};
+
 /// One localizer on one drive. Means are over the ticks of the drive. Without the truth only the
 /// counts and lost_s are known.
 struct LocalizerScore {
@@ -40,6 +60,7 @@ struct LocalizerScore {
   std::vector<LostEpisode> lost;
   LossScore loss;
   std::vector<LookScore> looks;
+  std::optional<SpaceScore> in_space;  ///< on ground that is not flat
 };
 
 /// Scores one localizer of a drive, simulated or recorded, by what an estimator's ticks hold:
@@ -58,6 +79,7 @@ class EstimatorScorer {
 
  private:
   std::optional<LookId> count_updates(const mission::EstimatorTick& tick, std::size_t localizer);
+  void add_errors_in_space(const mission::EstimatorTick& tick, const Belief& belief, LookId look);
   void add_errors(const mission::EstimatorTick& tick, const Belief& belief,
                   std::optional<LookId> fused);
 
@@ -75,6 +97,16 @@ class EstimatorScorer {
   };
   Sums sums_;
   bool fixed_ = false;  ///< has known where it is
+  /// Of one look: errors of (z, pitch, roll) and, where they have a covariance, their NEES.
+  struct AttitudeError {
+    LookId look = 0;
+    bool ramp = false;
+    Eigen::Vector3d error = Eigen::Vector3d::Zero();
+    double nees = 0.0;
+  };
+  AttitudeScore attitude_score(bool ramp) const;
+
+  std::vector<AttitudeError> attitudes_;
 };
 
 }  // namespace vigia::evaluation

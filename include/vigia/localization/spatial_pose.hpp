@@ -29,16 +29,17 @@ struct FloorAttitude {
 /// What a ramp does to the robot: height, pitch and roll of its base.
 FloorAttitude floor_attitude(const SpatialPose& pose);
 
-/// The pose seen from above, (x, y, θ), and its covariance; θ is the direction of the robot's front
-/// projected on the floor plane.
+/// The pose seen from above the ground under it: (x, y, θ) in plan coordinates and its covariance;
+/// θ is the direction of the robot's front projected on the ground.
 struct PlanarEstimate {
   Pose2 pose;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
 };
-PlanarEstimate seen_from_above(const SpatialPose& pose);
+PlanarEstimate seen_from_above(const SpatialPose& pose, const Ground& ground = {});
 
-/// Moves the robot by an odometry increment in the plane of its own wheels.
+/// Moves the robot by an odometry increment in the plane of its own wheels; where the ground is not
+/// flat, as a robot would turn and rise that stands on it where this one is seen from above.
 SpatialPose moved_by(const SpatialPose& pose, const OdometryIncrement& u,
-                     const OdometryNoise& noise);
+                     const OdometryNoise& noise, const Ground& ground = {});
 
 }  // namespace vigia::localization

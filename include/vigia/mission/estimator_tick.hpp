@@ -29,6 +29,7 @@ struct GroundTruth {
   Pose2 pose;                            ///< at the tick's end
   Pose2 pose_before;                     ///< at its beginning
   std::vector<ExposureTruth> exposures;  ///< of EstimatorTick::observations, in their order
+  std::optional<Eigen::Isometry3d> wMr;  ///< at the tick's end, on ground that is not flat
 };
 
 /// What localizers were given in one tick and what they made of it, whoever gave it: a simulated

@@ -33,6 +33,7 @@ enum class EventKind {
   replan,         ///< another route is followed
   refused,        ///< a passage is too narrow for what is known of the robot's place
   via_missed,     ///< a point to pass lies behind, and the robot believes not to have passed it
+  ground_off,     ///< patterns contradict the map's ground
   kidnapped,      ///< the world has put the robot elsewhere
   arrived,        ///< this and what follows: how the mission ended
   collided,

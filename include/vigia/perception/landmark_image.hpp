@@ -18,6 +18,10 @@ Landmark outline_of(const Landmark& landmark);
 std::optional<Ellipse> expected_image(const Shot& shot, const Pose2& pose, const Landmark& landmark,
                                       const RigOnGround& on_ground);
 
+/// The same of a robot that stands at wMr.
+std::optional<Ellipse> expected_image(const Shot& shot, const Eigen::Isometry3d& wMr,
+                                      const Landmark& landmark, const Rig& rig);
+
 /// How a landmark's image moves between two shots.
 struct ImageMotion {
   Eigen::Vector2d shift = Eigen::Vector2d::Zero();  ///< px

@@ -108,6 +108,9 @@ class GazeController {
 
   void carry_target(const GazeInput& input);
   Eigen::Vector3d landmark_in_base(const GazeInput& input, const Landmark& landmark) const;
+  Eigen::Vector3d after_motion(const Eigen::Vector3d& p_r, const GazeInput& input,
+                               double seconds) const;
+  BaseTwist rolling(const GazeInput& input) const;
   Aim aim_for(const GazeInput& input, const Landmark& landmark) const;
   double wanted_focal(const GazeInput& input, const Landmark& landmark,
                       const Eigen::Vector3d& p_r) const;

@@ -25,6 +25,7 @@ struct Person {
   bool walking = false;
   int look = 0;  ///< which clothes, which team
   Figure figure = Figure::person;
+  double floor_m = 0.0;  ///< height of what he stands on
 };
 
 }  // namespace vigia::sim

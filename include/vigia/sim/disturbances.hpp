@@ -118,6 +118,11 @@ struct KidnappingParams {
   double min_m = 1.5;  ///< from where it was
 };
 
+/// The ramps are not as the map has them.
+struct RampErrorParams {
+  double steeper = from_deg(1.0);  ///< rad; what they lead to is higher with them
+};
+
 /// Which disturbances are on. Everything is off by default.
 struct DisturbanceParams {
   std::optional<MotionBlurParams> motion_blur;
@@ -135,6 +140,7 @@ struct DisturbanceParams {
   std::optional<PeopleParams> people;
   std::optional<ClutterParams> clutter;
   std::optional<KidnappingParams> kidnapping;
+  std::optional<RampErrorParams> ramp_error;
 };
 
 /// Reads the map `disturbances` of a mission file. Each key is `off`, `realistic` or a map of its

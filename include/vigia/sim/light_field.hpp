@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "vigia/core/floor_plan.hpp"
+#include "vigia/core/ground.hpp"
 #include "vigia/core/stamp.hpp"
 #include "vigia/sim/disturbances.hpp"
 
@@ -30,7 +31,8 @@ struct LightNow {
 /// random times.
 class LightField {
  public:
-  LightField(const LightParams& params, const FloorPlan& plan, std::uint64_t seed);
+  LightField(const LightParams& params, const FloorPlan& plan, std::uint64_t seed,
+             const Ground& ground = {});
 
   LightNow at(Stamp stamp) const;
   /// When lamps step, in order, as far as an hour.

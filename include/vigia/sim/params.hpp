@@ -12,6 +12,7 @@ namespace vigia::sim {
 // The keys of the simulator's parameters (see ParamVisitor).
 /// `off` or `realistic` for every disturbance that is left out but kidnapping, and one key each.
 void describe(ParamVisitor& v, DisturbanceParams& p);
+void describe(ParamVisitor& v, RampErrorParams& p);
 void describe(ParamVisitor& v, RangeRingParams& p);
 void describe(ParamVisitor& v, RobotSetup& setup);
 /// The keys `appearance` and `clutter` of the file of @p world, on whose faces clutter must lie.

@@ -23,6 +23,12 @@ struct RobotParams {
   HeadLimits head_limits;
   OdometryNoise odometry;
   SensorNoise sensor;
+  std::optional<WheelStance> wheels = std::nullopt;  ///< of which nothing is said: by the hull
+
+  /// Where the wheels touch the ground: as given, or on a circle of 0.7 of the hull's radius.
+  WheelStance stance() const {
+    return wheels.value_or(WheelStance{1.4 * radius_m, 1.4 * radius_m});
+  }
 };
 
 /// The robot's true state.
@@ -83,6 +89,8 @@ class Robot {
   void begin_look();
 
   const RobotTruth& truth() const { return truth_; }
+  /// Where it stands in the world, upright on its wheels.
+  Eigen::Isometry3d wMr() const { return ground_.place(truth_.pose); }
   /// What the wheels report of the motion since the last call: the chord (the true one unless the
   /// wheels slip) with an error of covariance control_covariance(). Backward motion has a negative
   /// trans.

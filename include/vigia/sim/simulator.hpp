@@ -96,6 +96,7 @@ class Simulator {
   const TrueCamera& camera_of(CameraId id) const;
   /// People, other robots, and what the robot sees of itself.
   std::vector<Person> figures() const;
+  std::vector<Person> figures_in_plan() const;
   std::vector<Exposure::Instant> instants(const TrueCamera& camera, const CameraModel& model) const;
 
   RobotSetup setup_;
