@@ -172,24 +172,24 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         ramp(
             ", [9, 3]]}", "]}",
-            "4:9: ground: the pieces must cover the room once: they have 23.000000 m² and the room "
+            "5:3: ground: the pieces must cover the room once: they have 23.000000 m² and the room "
             "29.000000 m²"),
         ramp("uphill_deg: 0", "uphill_deg: 90",
-             "4:9: ground: piece 2 of the ground shares no level edge with an earlier one to be "
+             "5:3: ground: piece 2 of the ground shares no level edge with an earlier one to be "
              "hinged along"),
-        ramp("[4, 1], [9, 1], [9, 2], [4, 2]]", "[4, 1], [9, 1], [9, 2], [6, 1.5]]",
-             "4:9: ground: piece 2 of the ground is not convex"),
+        ramp("[4, 1], [9, 1], [9, 2], [4, 2]]", "[4, 1], [9, 1], [9, 2], [6, 1.2]]",
+             "5:3: ground: piece 2 of the ground is not convex"),
         ramp("ground:",
              "obstacles:\n  - {polygon_m: [[3.5, 1.2], [4.5, 1.2], [4.5, 1.6], [3.5, "
              "1.6]], height_m: 1}\nground:",
-             "6:9: ground: obstacle 1 stands across a fold"),
+             "7:3: ground: obstacle 1 stands across a fold"),
         ramp("grade: 0.1,", "grade: 0.5,",
-             "6:62: ground[1].grade: found '0.5', must lie in [0, 0.25]"),
+             "6:58: ground[1].grade: found '0.5', must lie in [0, 0.25]"),
         Mistake{"version: 1\nroom: {width_m: 4, depth_m: 4}\nground:\n"
                 "  - {polygon_m: [[0, 0], [4, 0], [4, 2], [0, 2]]}\n"
                 "  - {polygon_m: [[0, 2], [2, 2], [2, 4], [0, 4]], grade: 0.1, uphill_deg: 90}\n"
                 "  - {polygon_m: [[2, 2], [4, 2], [4, 4], [2, 4]]}\n",
-                "w.yaml:4:3: ground: a step of 0.005 m at [2, 2.05] has no wall along it"}));
+                "w.yaml:4:3: ground: a step of 0.009950 m at [2, 2.1] has no wall along it"}));
 
 INSTANTIATE_TEST_SUITE_P(
     OfAWallOrObstacle, WorldMistake,

@@ -18,9 +18,9 @@ constexpr const char* kRampWorld =
     "  - {polygon_m: [[11, 0], [16, 0], [16, 4], [11, 4]]}\n"
     "appearance: {contrast: 0}\n"
     "clutter:\n"
-    "  - {kind: square, on: floor, centre_m: [8, 2, 0], size_m: 0.2, grey: 20}\n"
-    "  - {kind: square, on: face, centre_m: [9, 4, 1.5], normal_deg: -90, size_m: 0.2, grey: 20}\n"
-    "  - {kind: square, on: ceiling, centre_m: [8.5, 2, 2.6], size_m: 0.2, grey: 20}\n";
+    "  - {kind: square, on_floor: true, centre_m: [8, 2, 0], size_m: 0.2, grey: 20}\n"
+    "  - {kind: square, centre_m: [9, 4, 1.5], normal_deg: -90, size_m: 0.2, grey: 20}\n"
+    "  - {kind: square, on_ceiling: true, centre_m: [8.5, 2, 2.6], size_m: 0.2, grey: 20}\n";
 
 struct RampWorld {
   RampWorld() {
