@@ -617,7 +617,7 @@ Eigen::VectorXd CeilingFilter::converged(const std::vector<Seen>& seen, const Po
 /// learnt of it forgotten.
 Eigen::VectorXd CeilingFilter::settle(std::vector<Seen>& passed, const Pose2& start) {
   for (;;) {
-    const Eigen::VectorXd at = converged(passed, start);
+    Eigen::VectorXd at = converged(passed, start);
     if (passed.size() < 2) return at;
     const Linearised all = linearise(passed, at);
     const Eigen::LDLT<Eigen::MatrixXd> S(all.S);
