@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include <Eigen/Eigenvalues>
@@ -15,6 +16,15 @@ namespace vigia::tracking {
 namespace {
 
 using imaging::Window;
+
+/// How much darker than the ceiling beside it a patch of a frame must be.
+struct ContrastBound {
+  double share = 0.0;  ///< of the ceiling's grey level
+  double least = 0.0;  ///< grey levels
+  double enough = 0.0;
+
+  double beside(double ground) const { return std::clamp(share * ground, least, enough); }
+};
 
 /// A dark stretch of a row between two edges.
 struct DarkChord {
@@ -38,15 +48,16 @@ struct DarkSpot {
 /// Chords of one row: a falling and the next rising edge, no farther apart than a patch is long.
 class ChordFinder {
  public:
-  ChordFinder(const PatchFinderParams& params, int width)
-      : params_(params), slope_(static_cast<std::size_t>(width)) {}
+  /// @p contrast: of an edge that is looked at.
+  ChordFinder(const PatchFinderParams& params, double contrast, int width)
+      : params_(params), contrast_(contrast), slope_(static_cast<std::size_t>(width)) {}
 
   void find(const unsigned char* row, int width, int v, std::vector<DarkChord>& chords) {
     // Three pixels' mean less that four pixels before it, three times over.
     for (int u = 3; u < width - 3; ++u)
       slope_[static_cast<std::size_t>(u)] =
           row[u + 1] + row[u + 2] + row[u + 3] - row[u - 1] - row[u - 2] - row[u - 3];
-    const int threshold = static_cast<int>(1.5 * params_.min_contrast);
+    const int threshold = static_cast<int>(1.5 * contrast_);
     const int longest = static_cast<int>(1.3 * params_.length_px) + 3;
     int fell = -1;
     for (int u = 4; u < width - 4; ++u) {
@@ -71,25 +82,30 @@ class ChordFinder {
     double sum = 0.0;
     for (int u = from + 1; u < to; ++u) sum += row[u];
     chord.patch = sum / (to - from - 1);
-    chord.ground = std::min(row[std::max(0, from - 3)], row[std::min(width - 1, to + 3)]);
-    if (chord.ground - chord.patch >= 0.7 * params_.min_contrast) chords.push_back(chord);
+    // The lowest may lie on the patch's tongue, the two of one side on a lamp.
+    std::array<unsigned char, 4> beside{row[std::max(0, from - 3)], row[std::max(0, from - 6)],
+                                        row[std::min(width - 1, to + 3)],
+                                        row[std::min(width - 1, to + 6)]};
+    std::sort(beside.begin(), beside.end());
+    chord.ground = beside[1];
+    if (chord.ground - chord.patch >= 0.7 * contrast_) chords.push_back(chord);
   }
   /// Patches that the image's left or right border cuts have one edge only.
   void add_at_borders(const unsigned char* row, int width, int v,
                       std::vector<DarkChord>& chords) const {
-    const int threshold = static_cast<int>(1.5 * params_.min_contrast);
+    const int threshold = static_cast<int>(1.5 * contrast_);
     const int longest = static_cast<int>(params_.length_px) + 3;
     for (int u = 4; u < std::min(longest, width - 4); ++u) {
       if (slope_[static_cast<std::size_t>(u)] <= -threshold) break;
       if (slope_[static_cast<std::size_t>(u)] < threshold) continue;
-      if (row[0] + params_.min_contrast < row[u + 3])
+      if (row[0] + contrast_ < row[u + 3])
         chords.push_back({v, 1.0, static_cast<double>(row[0]), static_cast<double>(row[u + 3])});
       break;
     }
     for (int u = width - 5; u > std::max(width - longest, 4); --u) {
       if (slope_[static_cast<std::size_t>(u)] >= threshold) break;
       if (slope_[static_cast<std::size_t>(u)] > -threshold) continue;
-      if (row[width - 1] + params_.min_contrast < row[u - 3])
+      if (row[width - 1] + contrast_ < row[u - 3])
         chords.push_back(
             {v, width - 2.0, static_cast<double>(row[width - 1]), static_cast<double>(row[u - 3])});
       break;
@@ -97,6 +113,7 @@ class ChordFinder {
   }
 
   const PatchFinderParams& params_;
+  double contrast_;
   std::vector<int> slope_;
 };
 
@@ -273,10 +290,11 @@ constexpr double kMotionSpread_px = 1.0;  // of what patches of a frame moved
 constexpr double kMotionSpread = 0.1;     // … and of its length
 constexpr int kMaxFailures = 4;
 
-/// The better of the two directions, and by how much.
+/// The better of the two directions, by how much, and where the other one has the middle beside it.
 struct DirectedFit {
   PatchFit fit;
   double forward_log_odds = 0.0;
+  Eigen::Vector2d other = Eigen::Vector2d::Zero();
 };
 std::optional<DirectedFit> better_of(const std::optional<PatchFit>& one,
                                      const std::optional<PatchFit>& other) {
@@ -284,7 +302,19 @@ std::optional<DirectedFit> better_of(const std::optional<PatchFit>& one,
   if (!one || !other) return DirectedFit{one ? *one : *other, kOneSidedLogOdds};
   const PatchFit& best = one->square <= other->square ? *one : *other;
   const double less = std::abs(one->square - other->square);
-  return DirectedFit{best, std::min(0.5 * less / (best.noise * best.noise), kMaxLogOdds)};
+  const PatchFit& worse = one->square <= other->square ? *other : *one;
+  return DirectedFit{best, std::min(0.5 * less / (best.noise * best.noise), kMaxLogOdds),
+                     worse.shape.uv - best.shape.uv};
+}
+
+/// With the chance that the patch lies the other way round, which moves the middle of one whose end
+/// the border cuts. Its residuals go together: their odds count half.
+Eigen::Matrix3d covariance_of(const DirectedFit& directed, const PatchFinderParams& params) {
+  Eigen::Matrix3d P = directed.fit.covariance;
+  if (!params.polarity) return P;
+  const double turned = 1.0 / (1.0 + std::exp(0.5 * directed.forward_log_odds));
+  P.topLeftCorner<2, 2>() += turned * (1.0 - turned) * directed.other * directed.other.transpose();
+  return P;
 }
 
 std::optional<DirectedFit> fit_directed(const PatchWindow& window, PatchShape start,
@@ -315,11 +345,13 @@ double max_misfit(const PatchFit& fit, const PatchFinderParams& params) {
   return params.max_misfit * contrast * std::min(1.0, params.blur_px / fit.shape.blur);
 }
 
-bool is_patch(const PatchFit& fit, const PatchFinderParams& params, bool whole) {
+bool is_patch(const PatchFit& fit, const PatchFinderParams& params, const ContrastBound& bound,
+              bool whole) {
   const double contrast = fit.shape.ground - fit.shape.patch;
-  return contrast >= params.min_contrast &&
+  const double max_noise = params.max_noise * std::min(1.0, contrast / params.enough_contrast);
+  return contrast >= bound.beside(fit.shape.ground) &&
          std::abs(fit.shape.log_scale) <= params.max_scale_error &&
-         fit.noise <= std::max(params.max_misfit * contrast, params.max_noise) &&
+         fit.noise <= std::max(params.max_misfit * contrast, max_noise) &&
          fit.misfit <= max_misfit(fit, params) && fit.covariance.allFinite() &&
          fit.covariance.topLeftCorner<2, 2>().trace() < (whole ? kMaxTrace_px2 : kMaxCutTrace_px2);
 }
@@ -348,18 +380,69 @@ bool looked_at(const std::vector<Eigen::Vector3d>& spots, const DarkChord& chord
   });
 }
 
-std::vector<DarkChord> scan_rows(const imaging::Frame& frame, const PatchFinderParams& params) {
-  const int step = std::max(1, static_cast<int>(0.7 * params.width_px));
+/// Rows of a frame so close together that no patch lies between them.
+struct ScannedRows {
   std::vector<imaging::Run> runs;
-  for (int v = step / 2; v < frame.height(); v += step) runs.push_back({v, 0, frame.width()});
-  std::vector<unsigned char> grey(imaging::pixels_in(runs));
-  frame.read_grey_runs(runs, grey.data());
-  ChordFinder finder(params, frame.width());
+  std::vector<unsigned char> grey;
+};
+
+ScannedRows read_rows(const imaging::Frame& frame, const PatchFinderParams& params) {
+  const int step = std::max(1, static_cast<int>(0.7 * params.width_px));
+  ScannedRows rows;
+  for (int v = step / 2; v < frame.height(); v += step) rows.runs.push_back({v, 0, frame.width()});
+  rows.grey.resize(imaging::pixels_in(rows.runs));
+  frame.read_grey_runs(rows.runs, rows.grey.data());
+  return rows;
+}
+
+/// The value below which the share @p p of a histogram lies.
+double quantile(const std::vector<int>& counts, double p) {
+  const int all = std::accumulate(counts.begin(), counts.end(), 0);
+  int below = 0;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    below += counts[i];
+    if (below > p * all) return static_cast<double>(i);
+  }
+  return 0.0;
+}
+
+/// What edges a frame's rows are searched for, and what its patches must show: by the light in its
+/// darker parts, and by the noise, which the second differences of neighbours give.
+struct FrameContrast {
+  double search = 0.0;  ///< grey levels
+  ContrastBound bound;
+};
+
+FrameContrast contrast_of(const ScannedRows& rows, int width, const PatchFinderParams& params) {
+  constexpr int kStride = 5;
+  constexpr double kDarkerParts = 0.25;
+  constexpr double kNormalMedian = 0.6745;  // of |x|, by σ
+  std::vector<int> levels(256, 0);
+  std::vector<int> roughness(1024, 0);
+  for (std::size_t row = 0; row < rows.runs.size(); ++row) {
+    const unsigned char* grey = rows.grey.data() + row * static_cast<std::size_t>(width);
+    for (int u = 1; u < width - 1; u += kStride) {
+      ++levels[grey[u]];
+      ++roughness[static_cast<std::size_t>(std::abs(grey[u - 1] - 2 * grey[u] + grey[u + 1]))];
+    }
+  }
+  const double noise = quantile(roughness, 0.5) / (kNormalMedian * std::sqrt(6.0));
+  const double least = std::max(params.least_contrast,
+                                std::min(params.contrast_to_noise * noise, params.enough_contrast));
+  FrameContrast contrast;
+  contrast.bound = {params.min_contrast, least, params.enough_contrast};
+  contrast.search = contrast.bound.beside(quantile(levels, kDarkerParts));
+  return contrast;
+}
+
+std::vector<DarkChord> find_chords(const ScannedRows& rows, double contrast,
+                                   const PatchFinderParams& params, int width) {
+  ChordFinder finder(params, contrast, width);
   std::vector<DarkChord> chords;
-  const unsigned char* row = grey.data();
-  for (const imaging::Run& run : runs) {
-    finder.find(row, frame.width(), run.v, chords);
-    row += frame.width();
+  const unsigned char* row = rows.grey.data();
+  for (const imaging::Run& run : rows.runs) {
+    finder.find(row, width, run.v, chords);
+    row += width;
   }
   return chords;
 }
@@ -380,8 +463,8 @@ bool alike(const Eigen::Vector2d& one, const Eigen::Vector2d& other) {
 
 class CandidateJudge {
  public:
-  CandidateJudge(const PatchFinderParams& params, const Window& frame)
-      : params_(params), frame_(frame) {}
+  CandidateJudge(const PatchFinderParams& params, const ContrastBound& bound, const Window& frame)
+      : params_(params), bound_(bound), frame_(frame) {}
 
   void judge(Candidate& candidate) {
     const auto start = start_of(candidate.spot, candidate.chord, params_, frame_);
@@ -397,7 +480,7 @@ class CandidateJudge {
     const auto fit = refine_patch(candidate.window, params_, whole, directed->fit);
     if (!fit) return;
     directed->fit = *fit;
-    if (is_patch(*fit, params_, whole)) candidate.fit = directed;
+    if (is_patch(*fit, params_, bound_, whole)) candidate.fit = directed;
     if (fit->suspected_motion.norm() == 0.0) return;
     moved.motion = fit->suspected_motion;
     moved.blur = std::sqrt(std::max(params_.blur_px * params_.blur_px,
@@ -412,7 +495,7 @@ class CandidateJudge {
 
  private:
   bool is_moved_patch(const DirectedFit& moved) const {
-    return is_patch(moved.fit, params_, true) && !is_cut(moved.fit.shape, params_, frame_);
+    return is_patch(moved.fit, params_, bound_, true) && !is_cut(moved.fit.shape, params_, frame_);
   }
 
   void try_moved(Candidate& candidate, const std::optional<PatchShape>& start) {
@@ -426,6 +509,7 @@ class CandidateJudge {
   }
 
   PatchFinderParams params_;
+  ContrastBound bound_;
   Window frame_;
   int failures_ = 0;  ///< one after the other, of motions that were suspected
 };
@@ -468,8 +552,10 @@ void settle_motion(std::vector<Candidate>& candidates, CandidateJudge& judge) {
 PatchScan PatchFinder::find(const imaging::Frame& frame) const {
   std::vector<Eigen::Vector3d> spots;  // middle, radius
   std::vector<Candidate> candidates;
-  CandidateJudge judge(params_, frame.full());
-  std::vector<DarkChord> chords = scan_rows(frame, params_);
+  const ScannedRows rows = read_rows(frame, params_);
+  const FrameContrast contrast = contrast_of(rows, frame.width(), params_);
+  CandidateJudge judge(params_, contrast.bound, frame.full());
+  std::vector<DarkChord> chords = find_chords(rows, contrast.search, params_, frame.width());
   for (DarkChord& chord : chords) {
     if (looked_at(spots, chord)) continue;
     PatchWindow window = read_window(frame, chord, 1.15 * params_.length_px + 4.0);
@@ -488,7 +574,7 @@ PatchScan PatchFinder::find(const imaging::Frame& frame) const {
       continue;
     }
     const PatchFit& fit = candidate.fit->fit;
-    scan.patches.push_back({fit.shape.uv, fit.shape.angle, fit.covariance,
+    scan.patches.push_back({fit.shape.uv, fit.shape.angle, covariance_of(*candidate.fit, params_),
                             candidate.fit->forward_log_odds,
                             is_cut(fit.shape, params_, frame.full())});
     square += fit.noise * fit.noise;

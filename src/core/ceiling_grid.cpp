@@ -1,10 +1,33 @@
 #include "vigia/core/ceiling_grid.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "vigia/core/params.hpp"
 
 namespace vigia {
+namespace {
+
+void describe_rectangle(ParamVisitor& v, CeilingGrid::Extent& rectangle, const char* begin,
+                        const char* end, const char* message) {
+  v.vector("min_m", rectangle.min, {-1e4, 1e4}, About(begin).required());
+  v.vector("max_m", rectangle.max, {-1e4, 1e4}, About(end).required());
+  v.require(v.reader() == nullptr || (rectangle.min.array() <= rectangle.max.array()).all(),
+            "max_m", message);
+}
+
+void describe_gap(ParamVisitor& v, CeilingGrid& grid) {
+  CeilingGrid::Extent gap;
+  describe_rectangle(v, gap, "corner of the gap with the lesser x and y", "the opposite one",
+                     "the gap ends before it begins");
+  const Eigen::Array2d first = (gap.min.array() / grid.pitch_m).ceil();
+  const Eigen::Array2d last = (gap.max.array() / grid.pitch_m).floor();
+  v.require(v.reader() == nullptr || (first <= last).all(), "max_m",
+            "no patch's place lies in this gap: they are at the multiples of pitch_m");
+  if (v.reader() != nullptr) grid.gaps.push_back(gap);
+}
+
+}  // namespace
 
 void describe(ParamVisitor& v, CeilingGrid& grid) {
   v.number("pitch_m", grid.pitch_m, {0.2, 20.0}, "between neighbouring patches");
@@ -21,12 +44,10 @@ void describe(ParamVisitor& v, CeilingGrid& grid) {
   v.angle("placement_deg", grid.placement_turn, {0.0, 20.0}, "σ of a patch's true direction");
   v.given("min_m", [&] {
     grid.extent = CeilingGrid::Extent{};
-    CeilingGrid::Extent& extent = *grid.extent;
-    v.vector("min_m", extent.min, {-1e4, 1e4}, About("where patches begin").required());
-    v.vector("max_m", extent.max, {-1e4, 1e4}, About("where they end").required());
-    v.require(v.reader() == nullptr || (extent.min.array() <= extent.max.array()).all(), "max_m",
-              "the grid ends before it begins");
+    describe_rectangle(v, *grid.extent, "where patches begin", "where they end",
+                       "the grid ends before it begins");
   });
+  v.each("gaps", "rectangles in which no patch hangs", [&] { describe_gap(v, grid); });
 }
 
 Eigen::Vector2d cell_centre(const CeilingGrid& grid, const CeilingCell& cell) {
@@ -37,10 +58,16 @@ CeilingCell nearest_cell(const CeilingGrid& grid, const Eigen::Vector2d& p) {
   return {std::llround(p.x() / grid.pitch_m), std::llround(p.y() / grid.pitch_m)};
 }
 
+bool is_endless(const CeilingGrid& grid) {
+  return !grid.extent && grid.gaps.empty();
+}
+
 bool has_patch(const CeilingGrid& grid, const CeilingCell& cell) {
-  if (!grid.extent) return true;
-  const Eigen::Array2d p = cell_centre(grid, cell).array();
-  return (p >= grid.extent->min.array()).all() && (p <= grid.extent->max.array()).all();
+  if (is_endless(grid)) return true;
+  const Eigen::Vector2d p = cell_centre(grid, cell);
+  if (grid.extent && !grid.extent->contains(p)) return false;
+  return std::none_of(grid.gaps.begin(), grid.gaps.end(),
+                      [&](const CeilingGrid::Extent& gap) { return gap.contains(p); });
 }
 
 }  // namespace vigia

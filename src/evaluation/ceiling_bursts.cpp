@@ -139,17 +139,18 @@ class CeilingWatch {
   void see(const vpImage<unsigned char>& image, const OdometryIncrement& u) {
     now_ = u.to;
     const auto step = condition_.flow ? flow_.next(image) : std::nullopt;
+    const std::vector<PatchImage> patches = finder_.find(imaging::ImageFrame(image)).patches;
     // Over ticks without pictures the odometry has gone on already.
     const bool bridged = condition_.odometry && filter_.belief().stamp > last_seen_;
     if (step && condition_.odometry && !bridged)
       filter_.predict(u, *step);
     else if (step && !bridged)
-      filter_.predict(*step, now_);
+      filter_.predict(*step, now_, patches);
     else if (condition_.odometry)
       filter_.predict(u);
     else if (now_ > filter_.belief().stamp)
       filter_.predict_unknown(now_);
-    filter_.update(finder_.find(imaging::ImageFrame(image)).patches);
+    filter_.update(patches);
     last_seen_ = now_;
   }
 
@@ -177,6 +178,28 @@ class CeilingWatch {
   Stamp now_;
   Stamp last_seen_;
 };
+
+/// Rectangles without patches about a place, as far as a drive from there may get to.
+std::vector<CeilingGrid::Extent> gaps_about(const Eigen::Vector2d& place, std::uint64_t seed) {
+  constexpr int kGapPitch = 4;     // cells, of the squares that have a gap each
+  constexpr int kGapSquares = 4;   // each way
+  constexpr double kMargin = 0.3;  // cells
+  RandomStream random(seed, "ceiling gaps");
+  std::vector<CeilingGrid::Extent> gaps;
+  for (int i = -kGapSquares; i <= kGapSquares; ++i) {
+    for (int j = -kGapSquares; j <= kGapSquares; ++j) {
+      const auto draw = [&](int from, int to) {
+        return std::floor(random.uniform(from, to + 1.0));
+      };
+      const Eigen::Vector2d corner(std::round(place.x()) + kGapPitch * i + draw(0, 1),
+                                   std::round(place.y()) + kGapPitch * j + draw(0, 1));
+      const Eigen::Vector2d size(draw(0, 2), draw(0, 2));
+      gaps.push_back({(corner.array() - kMargin).matrix(),
+                      (corner + size + Eigen::Vector2d::Constant(kMargin)).eval()});
+    }
+  }
+  return gaps;
+}
 
 bool wrong_cell(const Pose2& truth, const Pose2& estimate, const CeilingGrid& grid) {
   const Eigen::Vector3d error = difference(estimate, truth);
@@ -283,6 +306,46 @@ CeilingKidnapping try_kidnapping(const CeilingOutageParams& params, std::uint64_
     trial.heading_error = std::abs(error.z());
   }
   return trial;
+}
+
+CeilingSettling try_settling(bool gaps, const CeilingOutageParams& params, std::uint64_t seed) {
+  constexpr double kWay_m = 6.0;
+  const CeilingCondition condition{CeilingOutage::thirty_frames, 0.5, kKidnapRate_hz, false, false};
+  CeilingSetting setting = hall_for(params, seed);
+  CeilingWalk walk(condition, params, seed);
+  if (gaps) setting.ceiling.grid.gaps = gaps_about(walk.pose().position(), seed);
+  const CeilingHall hall(setting);
+  CeilingWatch watch(setting, condition, params, start_of(walk));
+  const int before = steps(kBeforeOutage_s, kKidnapRate_hz, 1);
+  const int out = outage_frames(condition);
+  const int after = steps(kWay_m / condition.speed_mps, kKidnapRate_hz, 1);
+  CeilingSettling trial;
+  for (int i = 0; i < before + out + after; ++i) {
+    const OdometryIncrement u = walk.drive();
+    if (i >= before && i < before + out) {
+      watch.drive_blind(u);
+      continue;
+    }
+    watch.see(imaging::grey_image(*hall.expose(walk.pose(), i)), u);
+    if (i < before) continue;
+    const Belief belief = watch.belief();
+    const bool sure = belief.status == BeliefStatus::tracking;
+    const bool wrong = wrong_cell(walk.pose(), belief.pose, setting.ceiling.grid);
+    trial.ambiguous = trial.ambiguous || !sure;
+    trial.wrong_unflagged += sure && wrong ? 1 : 0;
+    trial.settled = sure;
+    trial.right = sure && !wrong;
+    if (!sure) trial.way_m = (i + 1 - before - out) / kKidnapRate_hz * condition.speed_mps;
+  }
+  return trial;
+}
+
+std::vector<CeilingSettling> try_settlings(int count, bool gaps, const CeilingOutageParams& params,
+                                           std::uint64_t first, int threads) {
+  std::vector<CeilingSettling> trials(static_cast<std::size_t>(count));
+  work_off(trials.size(), threads,
+           [&](std::size_t i) { trials[i] = try_settling(gaps, params, first + i); });
+  return trials;
 }
 
 std::vector<CeilingOutageTrial> try_outages(const std::vector<CeilingCondition>& conditions,

@@ -55,9 +55,9 @@ std::map<CeilingCell, Eigen::Vector3d> placement_about(const CeilingSetting& set
 void predict_motion(CeilingFilter& filter, const CeilingSetting& setting, const CeilingFrame& frame,
                     CeilingMotion motion, Stamp now) {
   if (motion == CeilingMotion::key_frame_flow && frame.flow)
-    filter.predict(*frame.flow, now);
+    filter.predict(*frame.flow, now, frame.scan.patches);
   else if (motion == CeilingMotion::published_flow && frame.edges)
-    filter.predict(image_shift(setting.known_camera(), *frame.edges), now);
+    filter.predict(image_shift(setting.known_camera(), *frame.edges), now, frame.scan.patches);
   else
     filter.predict_unknown(now);
 }

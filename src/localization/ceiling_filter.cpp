@@ -9,6 +9,7 @@
 
 #include "vigia/core/angle.hpp"
 #include "vigia/core/plane_geometry.hpp"
+#include "vigia/localization/chi_square.hpp"
 #include "vigia/localization/motion_fusion.hpp"
 
 namespace vigia::localization {
@@ -22,12 +23,15 @@ constexpr double kNegligible = 1e-6;
 constexpr double kForgotten_px = 40.0;  // beyond the border
 constexpr double kPlain_px = 8.0;       // from the border: a patch there should be found
 constexpr int kIterations = 5;
-constexpr int kSingle = 16;  // frames with one patch, which may be none, for one with more
+constexpr double kSingle_s = 0.64;  // of one patch, which may be none, for a frame with more
+constexpr double kAnotherPatch_m = 0.3;
 constexpr double kUnseenMotions[] = {4.0, 16.0, 64.0};  // variances of a tick
 constexpr double kCalming = 0.9;                        // a tick
 constexpr double kLoneDoubt = 0.1;  // that a lone patch which fits a wide prediction is none
 constexpr double kFlowSlack_m = 0.01;
+constexpr double kTurnPerMetre = 2.0;  // rad, of a robot half a metre wide, at most
 constexpr double kAtRest = 1e-7;
+constexpr double kTogether = 0.9999;           // of χ² of patches that agree with each other
 constexpr int kHeadingWraps = 3;               // turns each way
 constexpr double kSlightTurn = from_deg(3.0);  // σ of a fix's heading beside the prediction's
 
@@ -63,7 +67,11 @@ void CeilingFilter::reset(Stamp stamp, const Prior& prior, const CeilingCameraEr
   shifts_ = {{CeilingCell{}, 1.0}};
   judged_.clear();
   cells_unsure_ = false;
-  gated_ = 0;
+  gated_ = 0.0;
+  contradicts_.reset();
+  before_.clear();
+  flow_misled_ = false;
+  updated_ = stamp;
   unknown_s_ = 0.0;
   flow_alone_s_ = 0.0;
   lively_Q_.setZero();
@@ -125,10 +133,35 @@ void CeilingFilter::predict(const OdometryIncrement& u) {
   enliven(motion.Q);
 }
 
-void CeilingFilter::predict(const ImageShift& shift, Stamp to) {
+/// Whether a flow shows the ceiling's motion, by the patches of the frames that it joins.
+bool CeilingFilter::follows_ceiling(const FlowMotion& flow, const std::vector<PatchImage>& patches,
+                                    double dt) {
+  std::vector<PatchOnCeiling> now;
+  for (const Seen& one : see(patches)) now.push_back(one.patch);
+  const double reach_m = params_.max_speed_mps * dt;
+  const double reach = kTurnPerMetre * reach_m;
+  switch (judge_flow(before_, now, flow, reach_m, reach, params_.gate)) {
+    case FlowVerdict::silent:
+      break;
+    case FlowVerdict::agrees:
+      flow_misled_ = false;
+      break;
+    case FlowVerdict::contradicts:
+      flow_misled_ = true;
+      break;
+  }
+  return !flow_misled_;
+}
+
+void CeilingFilter::predict(const ImageShift& shift, Stamp to,
+                            const std::vector<PatchImage>& patches) {
   const FlowMotion seen = seen_motion(shift);
-  const double reach = params_.max_speed_mps * (to - stamp_).seconds() + kFlowSlack_m;
   const double dt = (to - stamp_).seconds();
+  const double reach = params_.max_speed_mps * dt + kFlowSlack_m;
+  if (!follows_ceiling(seen, patches, dt)) {
+    predict_unknown(to);
+    return;
+  }
   const bool tells = seen.covariance.topLeftCorner<2, 2>().trace() <
                      unknown_motion(0.0, dt).topLeftCorner<2, 2>().trace();
   if (!tells || seen.step.position().norm() > reach || reach > 0.5 * grid_.pitch_m) {
@@ -161,7 +194,7 @@ bool CeilingFilter::predict(const OdometryIncrement& u, const ImageShift& shift)
 /// Of a robot that may keep one direction all the time: σ grows as the time, not as its root.
 Eigen::Matrix3d CeilingFilter::unknown_motion(double from_s, double to_s) const {
   const double reach = params_.max_speed_mps / 3.0;
-  const double turn = 2.0 * params_.max_speed_mps;  // rad/s, of a robot half a metre wide
+  const double turn = kTurnPerMetre * params_.max_speed_mps;
   const double grown = to_s * to_s - from_s * from_s;
   return Eigen::Vector3d(reach * reach, reach * reach, turn * turn).asDiagonal() * grown;
 }
@@ -477,7 +510,7 @@ void CeilingFilter::weigh_shifts(const Linearised& all, const std::vector<Seen>&
 /// Patches where a shift has none, and none where it has one. Each cell is judged once while it is
 /// in view: a patch that fell off is missing in every frame for one and the same reason.
 void CeilingFilter::judge_presence(const std::vector<Seen>& seen, const Pose2& at) {
-  if (!grid_.extent) return;
+  if (is_endless(grid_)) return;
   std::set<CeilingCell> present;
   for (const Seen& one : seen) present.insert(one.cell);
   std::set<CeilingCell> judged;
@@ -516,7 +549,22 @@ void CeilingFilter::doubt() {
   P_.topRows<3>().setZero();
   P_.leftCols<3>().setZero();
   P_.diagonal().head<3>() << sigma * sigma, sigma * sigma, kPi * kPi / 3.0;
-  gated_ = 0;
+  gated_ = 0.0;
+  contradicts_.reset();
+}
+
+/// One patch alone may be none of the grid's; another one that contradicts as well is no chance.
+void CeilingFilter::note_contradiction(const std::vector<Seen>& seen) {
+  double frames = 1.0;
+  if (seen.size() == 1) {
+    const Eigen::Vector2d at =
+        pose().position() + world_to_robot(-pose().theta) * seen.front().patch.q;
+    const bool another = contradicts_ && (*contradicts_ - at).norm() > kAnotherPatch_m;
+    if (!another) frames = std::min(1.0, (stamp_ - updated_).seconds() / kSingle_s);
+    contradicts_ = at;
+  }
+  gated_ += frames;
+  if (gated_ >= params_.max_gated - 1e-9) doubt();
 }
 
 /// By value: the caller has the shift from shifts_, which this replaces.
@@ -562,6 +610,45 @@ Eigen::VectorXd CeilingFilter::converged(const std::vector<Seen>& seen, const Po
     if (moved < kAtRest) break;
   }
   return at;
+}
+
+/// Each patch by itself may agree with a wide prediction, and two of them not with each other: the
+/// place of one, as it was learnt or as it is seen, is not true. It is left out, and what was
+/// learnt of it forgotten.
+Eigen::VectorXd CeilingFilter::settle(std::vector<Seen>& passed, const Pose2& start) {
+  for (;;) {
+    Eigen::VectorXd at = converged(passed, start);
+    if (passed.size() < 2) return at;
+    const Linearised all = linearise(passed, at);
+    const Eigen::LDLT<Eigen::MatrixXd> S(all.S);
+    const Eigen::VectorXd weighed = S.solve(all.y);
+    if (all.y.dot(weighed) <= chi_square_quantile(kTogether, static_cast<double>(all.y.size())))
+      return at;
+    const Eigen::MatrixXd inverse = S.solve(Eigen::MatrixXd::Identity(all.S.rows(), all.S.cols()));
+    std::size_t worst = 0;
+    double most = 0.0;
+    for (std::size_t i = 0; i < passed.size(); ++i) {
+      const auto row = 3 * static_cast<Eigen::Index>(i);
+      const Eigen::Vector3d part = weighed.segment<3>(row);
+      const Eigen::Matrix3d own = inverse.block<3, 3>(row, row);
+      const double less = part.dot(own.ldlt().solve(part));  // that χ² is without it
+      if (less <= most) continue;
+      most = less;
+      worst = i;
+    }
+    forget(passed[worst].cell);
+    passed.erase(passed.begin() + static_cast<std::ptrdiff_t>(worst));
+  }
+}
+
+/// A patch's place is as unknown as before it was seen.
+void CeilingFilter::forget(const CeilingCell& cell) {
+  const Eigen::Index place = patches_.at(cell);
+  x_.segment<3>(place).setZero();
+  P_.middleRows<3>(place).setZero();
+  P_.middleCols<3>(place).setZero();
+  P_(place, place) = P_(place + 1, place + 1) = grid_.placement_m * grid_.placement_m;
+  P_(place + 2, place + 2) = grid_.placement_turn * grid_.placement_turn;
 }
 
 void CeilingFilter::fuse(const Linearised& all, const std::vector<Seen>& seen) {
@@ -614,21 +701,24 @@ CeilingFilter::Fit CeilingFilter::fit_against_flow(const std::vector<Seen>& seen
 
 CeilingUpdate CeilingFilter::update(const std::vector<PatchImage>& patches) {
   const std::vector<Seen> seen = see(patches);
+  before_.clear();
+  for (const Seen& one : seen) before_.push_back(one.patch);
   if (seen.empty()) return CeilingUpdate::none_seen;
-  const int contradicts = seen.size() > 1 ? kSingle : 1;
   Fit fitted = fit(seen);
   if (fitted.passed.empty() && flow_alone_s_ > 0.0) fitted = fit_against_flow(seen);
-  const std::vector<Seen>& passed = fitted.passed;
+  std::vector<Seen>& passed = fitted.passed;
   if (passed.empty()) {
-    gated_ += contradicts;
-    if (gated_ >= kSingle * params_.max_gated) doubt();
+    note_contradiction(seen);
+    updated_ = stamp_;
     refresh_belief();
     return CeilingUpdate::gated;
   }
-  gated_ = 0;
+  gated_ = 0.0;
+  contradicts_.reset();
+  updated_ = stamp_;
+  const Eigen::VectorXd at = settle(passed, fitted.start.pose);
   note_lone_patch(passed);
   note_turn(fitted.start);
-  const Eigen::VectorXd at = converged(passed, fitted.start.pose);
   const Linearised all = linearise(passed, at);
   weigh_shifts(all, fitted.seen, Pose2::from_vector(at.head<3>()));
   fuse(all, passed);

@@ -117,7 +117,7 @@ CeilingFollower::Step CeilingFollower::follow(const Sight& sight) {
     begun_ = begin(step.scan, sight.stamp);
     if (!begun_) return step;
   } else if (sight.motion) {
-    filter_.predict(*sight.motion, sight.stamp);
+    filter_.predict(*sight.motion, sight.stamp, step.scan.patches);
   } else {
     filter_.predict_unknown(sight.stamp);
   }

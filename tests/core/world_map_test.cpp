@@ -79,6 +79,24 @@ TEST(WorldMap, AFreeStandingLandmarkNeedsNoWall) {
   EXPECT_EQ(world.landmarks.all().size(), 1U);
 }
 
+constexpr const char* kHall = "version: 1\nroom: {width_m: 20, depth_m: 20}\nceiling:\n";
+
+TEST(WorldMap, ACeilingHasPatchesButInItsGaps) {
+  const WorldMap world = read_world(std::string(kHall) +
+                                    "  gaps:\n"
+                                    "    - {min_m: [2.5, 2.5], max_m: [4.2, 3.4]}\n"
+                                    "    - {min_m: [7, 1], max_m: [7, 1]}\n");
+  ASSERT_TRUE(world.ceiling);
+  EXPECT_FALSE(is_endless(*world.ceiling));
+  std::set<std::pair<std::int64_t, std::int64_t>> missing;
+  for (std::int64_t i = 0; i <= 20; ++i)
+    for (std::int64_t j = 0; j <= 20; ++j)
+      if (!has_patch(*world.ceiling, {i, j})) missing.insert({i, j});
+  const std::set<std::pair<std::int64_t, std::int64_t>> expected{{3, 3}, {4, 3}, {7, 1}};
+  EXPECT_EQ(missing, expected);
+  EXPECT_TRUE(is_endless(*read_world(std::string(kHall) + "  pitch_m: 2\n").ceiling));
+}
+
 TEST(WorldMap, ResolvedAndWrittenItReadsBackTheSame) {
   const auto root = parse_config(std::string(kRoom) + "  []\n", "w.yaml");
   MapReader reader(root, "");
@@ -144,6 +162,17 @@ Mistake disc(const std::string& centre, const std::string& normal, const std::st
               "\n    normal_deg: " + normal + "\n    radius_m: " + radius + "\n",
           "w.yaml:" + message};
 }
+
+INSTANTIATE_TEST_SUITE_P(
+    OfTheCeiling, WorldMistake,
+    testing::Values(
+        Mistake{std::string(kHall) + "  gaps: [{min_m: [1, 1], max_m: [0, 1]}]\n",
+                "w.yaml:4:33: ceiling.gaps[0].max_m: the gap ends before it begins"},
+        Mistake{std::string(kHall) + "  gaps: [{min_m: [1.2, 1], max_m: [1.9, 1]}]\n",
+                "w.yaml:4:35: ceiling.gaps[0].max_m: no patch's place lies in this gap: they are "
+                "at the multiples of pitch_m"},
+        Mistake{std::string(kHall) + "  gaps: [{min_m: [1, 1]}]\n",
+                "w.yaml:4:10: ceiling.gaps[0].max_m: the key is missing"}));
 
 INSTANTIATE_TEST_SUITE_P(
     OfTheRoom, WorldMistake,

@@ -87,5 +87,19 @@ TEST(CeilingKidnapping, IsSaidInThreeFramesAndThePoseInTheCellIsKnown) {
   }
 }
 
+TEST(CeilingSettling, MappedGapsTellTheCellsApartAndAnEndlessGridNever) {
+  int settled = 0;
+  for (std::uint64_t seed = 8000; seed < 8006; ++seed) {
+    const CeilingSettling with = try_settling(true, {}, seed);
+    EXPECT_TRUE(with.ambiguous) << seed;
+    EXPECT_EQ(with.wrong_unflagged, 0) << seed;
+    settled += with.right ? 1 : 0;
+    const CeilingSettling endless = try_settling(false, {}, seed);
+    EXPECT_TRUE(endless.ambiguous) << seed;
+    EXPECT_FALSE(endless.settled) << seed;
+  }
+  EXPECT_GE(settled, 4);
+}
+
 }  // namespace
 }  // namespace vigia::evaluation

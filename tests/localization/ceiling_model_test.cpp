@@ -211,7 +211,7 @@ TEST(CeilingFilter, BelievesTheFlowThatTheOdometryBearsOutAndNoOther) {
   // The odometry's σ over that way is ten times the flow's, which has nearly all the weight.
   EXPECT_NEAR(after(u, shift_of({0.11, 0.0, 0.0})).pose.x, 0.31, 3e-4);
   EXPECT_NEAR(after(u, shift_of({-0.3, 0.1, 0.2})).pose.x, 0.30, 1e-9);
-  const Belief fast = after(shift_of({0.3, 0.0, 0.0}), u.to);
+  const Belief fast = after(shift_of({0.3, 0.0, 0.0}), u.to, std::vector<PatchImage>{});
   EXPECT_NEAR(fast.pose.x, 0.2, 1e-9);
   EXPECT_GT(fast.position_sigma(), 0.05);
 }
@@ -231,7 +231,7 @@ TEST(CeilingFilter, ATurnUnderATiltIsNoShift) {
   const Eigen::Vector2d o(-errors.tilt_y, errors.tilt_x);
   ImageShift seen = shift_of({0.0, 0.0, kTurn});
   seen.shift = o - Eigen::Rotation2Dd(kTurn) * o;
-  filter.predict(seen, Stamp::from_seconds(0.04));
+  filter.predict(seen, Stamp::from_seconds(0.04), {});
   EXPECT_LT(filter.belief().pose.position().norm(), 1e-9);
   // That it is so is what the camera's images say.
   const Pose2 turned{0.0, 0.0, kTurn};
@@ -367,6 +367,71 @@ TEST(CeilingFilter, ColumnsThatAreMissingAtTheGridsEdgeSettleWhichCellItIs) {
   ASSERT_EQ(filter.update(images_about(up_camera(), {}, robot, grid)), CeilingUpdate::fused);
   EXPECT_NEAR(filter.belief().pose.x, robot.x, 1e-3);
   EXPECT_LT(weight_in_other_columns(filter.belief(), robot), 0.05);
+}
+
+TEST(CeilingFilter, AMappedGapSettlesWhichCellItIs) {
+  CeilingGrid grid;
+  grid.gaps = {{{0.9, -0.1}, {1.1, 1.1}}};  // the patches of (1, 0) and (1, 1)
+  for (const bool mapped : {true, false}) {
+    CeilingFilter filter(up_camera(), mapped ? grid : CeilingGrid{}, {});
+    const Pose2 start{-0.6, 0.5, 0.0};
+    filter.reset({}, near(start, 0.01, 0.01));
+    filter.update(images_about(up_camera(), {}, start, grid));
+    filter.predict_unknown(Stamp::from_seconds(4.0));
+    const Pose2 robot{0.2, 0.5, 0.0};
+    ASSERT_EQ(filter.update(images_about(up_camera(), {}, robot, grid)), CeilingUpdate::fused);
+    if (mapped)
+      EXPECT_LT(weight_in_other_columns(filter.belief(), robot), 0.03);
+    else
+      EXPECT_GT(weight_in_other_columns(filter.belief(), robot), 0.2);
+  }
+}
+
+TEST(CeilingFilter, APatchWhoseTwoImagesDisagreeIsForgotten) {
+  CeilingGrid grid;
+  grid.placement_m = 0.005;
+  CeilingFilterParams params;
+  params.tilt_sigma = from_deg(1.0);
+  params.max_speed_mps = 1.5;
+  CeilingFilter filter(up_camera(), grid, params);
+  Pose2 robot{0.1, 0.2, 0.0};
+  filter.reset({}, near(robot, 0.03, 0.03));
+  for (int i = 0; i < 12; ++i) {
+    filter.predict_unknown(Stamp::from_seconds(0.125 * i));
+    std::vector<PatchImage> images{image_of(up_camera(), {}, robot, {0.0, 0.0, 0.0}),
+                                   image_of(up_camera(), {}, robot, {1.0, 0.0, 0.0})};
+    // What the border leaves of it, read the wrong way round: 24 mm along it.
+    if (i == 5) images[1].uv += Eigen::Vector2d(6.0, 0.0);
+    filter.update(images);
+    const Eigen::Vector3d off = difference(filter.belief().pose, robot);
+    EXPECT_LT(off.head<2>().norm(), 0.03) << i;
+    EXPECT_LT(std::abs(filter.camera_errors().tilt_x), from_deg(2.0)) << i;
+    EXPECT_LT(std::abs(filter.camera_errors().tilt_y), from_deg(2.0)) << i;
+    robot = compose(robot, {0.02, 0.0, 0.0});
+  }
+}
+
+TEST(CeilingFilter, OnePatchThatContradictsIsDoubtByTheSecondAndAnotherOneAtOnce) {
+  CeilingFilterParams params;
+  params.max_speed_mps = 0.3;
+  const Pose2 robot{0.1, 0.2, 0.0};
+  const auto seconds_until_doubted = [&](double period_s, bool another) {
+    CeilingFilter filter(up_camera(), {}, params);
+    filter.reset({}, near(robot, 1e-3, 1e-3));
+    filter.update(images_about(up_camera(), {}, robot));
+    for (int i = 1; i < 200; ++i) {
+      const Stamp now = Stamp::from_seconds(period_s * i);
+      filter.predict({filter.belief().stamp, now, 0.0, 0.0, 0.0});
+      const double y = another && i % 2 == 0 ? -0.3 : 0.4;
+      EXPECT_EQ(filter.update({image_of(up_camera(), {}, robot, {0.3, y, 1.0})}),
+                CeilingUpdate::gated);
+      if (filter.belief().status != BeliefStatus::tracking) return now.seconds();
+    }
+    return 1e9;
+  };
+  EXPECT_NEAR(seconds_until_doubted(0.04, false), 1.92, 0.05);
+  EXPECT_NEAR(seconds_until_doubted(0.2, false), 2.0, 0.05);
+  EXPECT_LT(seconds_until_doubted(0.2, true), 0.9);
 }
 
 TEST(CeilingFilter, AFallenPatchIsNoEvidenceAgainInEveryFrame) {

@@ -148,6 +148,27 @@ TEST_F(ToldCeiling, PatchesAreBelievedAgainstAFlowThatFollowsAShadow) {
   }
 }
 
+TEST_F(ToldCeiling, OnePatchIsEnoughToSeeThatTheFlowFollowsAShadow) {
+  CeilingFollower follower(view_);
+  Pose2 pose{0.4, 0.3, 0.0};
+  for (int i = 0; i < 24; ++i) {
+    CeilingFollower::Sight sight = sight_from(pose, 0.125 * i);
+    if (i > 4) sight.scan.patches.resize(1);
+    if (i > 16) sight.scan.patches.clear();
+    if (i > 0) sight.motion = shift_by({0.02, i > 6 ? 0.14 : 0.0});
+    follower.follow(sight);
+    const Belief belief = *follower.belief();
+    const Eigen::Vector2d off = belief.pose.position() - pose.position();
+    // Nothing tells the motion once the last patch is out of sight.
+    EXPECT_LT(std::abs(off.y() - std::round(off.y())), i > 16 ? 0.3 : 0.02) << i;
+    EXPECT_LT(std::abs(off.y()), 5.0 * std::sqrt(belief.covariance(1, 1)) + 0.005) << i;
+    if (i > 21) {
+      EXPECT_EQ(belief.status, BeliefStatus::ambiguous) << i;
+    }
+    pose = compose(pose, {0.02, 0.0, 0.0});
+  }
+}
+
 TEST_F(ToldCeiling, AJumpThatTheRobotCannotMakeIsSaid) {
   for (const Eigen::Vector2d& jump : {Eigen::Vector2d(0.8, 0.3), {-0.3, 0.31}, {3.6, -2.56}}) {
     CeilingFollower follower(view_);

@@ -112,6 +112,41 @@ TEST(PatchFinder, MeasuresEveryPatchToTheBoundThatItsCovarianceStates) {
   }
 }
 
+/// A frame in a share of its light, with the sensor's noise.
+vpImage<unsigned char> dimmed(const imaging::Frame& frame, double light, double noise,
+                              std::uint64_t seed) {
+  vpImage<unsigned char> image = imaging::grey_image(frame);
+  RandomStream random(seed, "dim");
+  for (unsigned i = 0; i < image.getSize(); ++i) {
+    const double grey = light * image.bitmap[i] + noise * random.normal();
+    image.bitmap[i] = static_cast<unsigned char>(std::clamp(std::lround(grey), 0L, 255L));
+  }
+  return image;
+}
+
+TEST(PatchFinder, FindsPatchesInLittleLight) {
+  const CeilingScene scene({}, 1.0);
+  PatchFinderParams params;
+  params.length_px = scene.truth.grid.length_m / 2.2 * scene.camera.px;
+  params.width_px = scene.truth.grid.width_m / 2.2 * scene.camera.px;
+  const PatchFinder finder(params);
+  for (const double light : {0.15, 0.4}) {
+    RandomStream random(4, "poses");
+    PatchTally tally;
+    for (int k = 0; k < 20; ++k) {
+      const Pose2 robot{random.uniform(-40, 40), random.uniform(-40, 40),
+                        random.uniform(-kPi, kPi)};
+      const auto image = dimmed(*scene.expose(robot, k), light, 2.0, static_cast<std::uint64_t>(k));
+      compare(scene, robot, finder.find(imaging::ImageFrame(image)), tally);
+    }
+    ASSERT_GT(tally.whole, 60);
+    EXPECT_EQ(tally.missed, 0) << light;
+    EXPECT_EQ(tally.false_ones, 0) << light;
+    EXPECT_EQ(tally.reversed, 0) << light;
+    EXPECT_LT(tally.chi_square / (3.0 * tally.measured), 1.5) << light;
+  }
+}
+
 TEST(PatchFinder, SaysOfCutPatchesWhatTheyStillTell) {
   const PatchTally tally = tally_frames(CeilingScene({}, 0.0));
   ASSERT_GT(tally.cut, 10);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -23,12 +24,18 @@ struct CeilingGrid {
   bool polarity = true;
   double placement_m = 0.0;     ///< σ of a patch's place in x and in y
   double placement_turn = 0.0;  ///< σ of its direction, rad
-  /// Where patches hang at all; nothing: everywhere. World frame, metres.
+  /// A rectangle of the ceiling, world frame, metres.
   struct Extent {
     Eigen::Vector2d min = Eigen::Vector2d::Zero();
     Eigen::Vector2d max = Eigen::Vector2d::Zero();
+    bool contains(const Eigen::Vector2d& p) const {
+      return (p.array() >= min.array()).all() && (p.array() <= max.array()).all();
+    }
   };
-  std::optional<Extent> extent;
+  std::optional<Extent> extent;  ///< where patches hang at all; nothing: everywhere
+  /// Where none hangs, and the map says so: skylights, a stairwell, a gallery. A patch is missing
+  /// where its middle would lie in one.
+  std::vector<Extent> gaps;
 };
 
 /// A node of the grid: column and row.
@@ -58,6 +65,8 @@ void describe(ParamVisitor& v, CeilingGrid& grid);
 Eigen::Vector2d cell_centre(const CeilingGrid& grid, const CeilingCell& cell);
 /// The cell whose centre is nearest.
 CeilingCell nearest_cell(const CeilingGrid& grid, const Eigen::Vector2d& p);
+/// Whether the grid goes on for ever without a gap, so that nothing tells its cells apart.
+bool is_endless(const CeilingGrid& grid);
 /// Whether the grid has a patch there.
 bool has_patch(const CeilingGrid& grid, const CeilingCell& cell);
 

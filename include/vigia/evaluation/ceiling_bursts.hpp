@@ -73,4 +73,20 @@ CeilingKidnapping try_kidnapping(const CeilingOutageParams& params, std::uint64_
 std::vector<CeilingKidnapping> try_kidnappings(int count, const CeilingOutageParams& params,
                                                std::uint64_t first, int threads);
 
+/// What became of the hypotheses that an outage left.
+struct CeilingSettling {
+  bool ambiguous = false;   ///< after the outage
+  bool settled = false;     ///< `tracking` again
+  bool right = false;       ///< … in the true cell
+  double way_m = 0.0;       ///< driven until then, or to the end
+  int wrong_unflagged = 0;  ///< frames
+};
+/// Three quarters of a second with patches, 30 frames without a picture at 0.5 m/s, then six
+/// metres with patches, at 25 Hz, with neither odometry nor flow. @p gaps: the ceiling lacks
+/// patches in rectangles, one to three patches long and wide, about one for every 16, which
+/// the map has.
+CeilingSettling try_settling(bool gaps, const CeilingOutageParams& params, std::uint64_t seed);
+std::vector<CeilingSettling> try_settlings(int count, bool gaps, const CeilingOutageParams& params,
+                                           std::uint64_t first, int threads);
+
 }  // namespace vigia::evaluation

@@ -12,6 +12,7 @@
 #include "vigia/core/odometry.hpp"
 #include "vigia/localization/ceiling_model.hpp"
 #include "vigia/localization/flow_trust.hpp"
+#include "vigia/localization/patch_motion.hpp"
 
 namespace vigia::localization {
 
@@ -29,7 +30,9 @@ struct CeilingFilterParams {
   /// axis.
   double mount_sigma_m = 0.0;    ///< in x and in y
   double mount_yaw_sigma = 0.0;  ///< rad
-  int max_gated = 3;  ///< frames in a row that contradict the prediction, until it is doubted
+  /// Frames in a row that contradict the prediction, until it is doubted. One patch alone may be
+  /// none of the grid's: it counts as a frame every 0.64 s, another one beside it at once.
+  int max_gated = 3;
 };
 
 /// The filter's state as it truly is.
@@ -56,8 +59,9 @@ enum class CeilingUpdate {
 ///
 /// A patch has no identity: a fix leaves the pose open by whole cells. Each fix weighs the cells by
 /// the prediction, so that where the robot may have moved by half a pitch unseen several shifts of
-/// the same filter remain, weighted; the belief is then ambiguous until motion, or the edge of a
-/// grid that has one, tells them apart: a patch where a shift has none, or none where it has one.
+/// the same filter remain, weighted; the belief is then ambiguous until motion, or the edge or a
+/// gap of a grid that has one, tells them apart: a patch where a shift has none, or none where it
+/// has one.
 /// Patches without a mark leave it open by half a turn as well, where the heading was hardly known:
 /// so does a hypothesis of the pose turned about a point half way between, which nothing on such a
 /// grid settles.
@@ -69,8 +73,10 @@ class CeilingFilter {
   void reset(Stamp stamp, const Prior& prior, const CeilingCameraErrors& about = {});
   void predict(const OdometryIncrement& increment);
   /// The motion between two frames by optical flow. It says nothing where it is faster than the
-  /// robot can be, nor where the robot may have gone half a pitch: the patches repeat.
-  void predict(const ImageShift& shift, Stamp to);
+  /// robot can be, nor where the robot may have gone half a pitch: the patches repeat; nor where
+  /// @p patches, of the frame to which it leads, moved otherwise, and from then on until some move
+  /// with it again.
+  void predict(const ImageShift& shift, Stamp to, const std::vector<PatchImage>& patches);
   /// By both, or where they contradict each other by the odometry alone: false.
   bool predict(const OdometryIncrement& increment, const ImageShift& shift);
   /// Nothing is known but how fast the robot may be.
@@ -109,6 +115,8 @@ class CeilingFilter {
   bool wide() const;
   bool open() const;
   std::vector<Seen> see(const std::vector<PatchImage>& patches) const;
+  bool follows_ceiling(const FlowMotion& flow, const std::vector<PatchImage>& patches, double dt);
+  void note_contradiction(const std::vector<Seen>& seen);
   std::vector<Seen> associated(const std::vector<Seen>& seen, const Pose2& pose) const;
   /// Where an update begins, and the chance that the robot faces the other way.
   struct Start {
@@ -141,6 +149,8 @@ class CeilingFilter {
   Eigen::MatrixXd gain(const Linearised& all) const;
   Eigen::VectorXd fused_state(const Linearised& all) const;
   Eigen::VectorXd converged(const std::vector<Seen>& seen, const Pose2& start) const;
+  Eigen::VectorXd settle(std::vector<Seen>& passed, const Pose2& start);
+  void forget(const CeilingCell& cell);
   void weigh_shifts(const Linearised& all, const std::vector<Seen>& seen, const Pose2& at);
   void judge_presence(const std::vector<Seen>& seen, const Pose2& at);
   void normalise_shifts();
@@ -175,12 +185,16 @@ class CeilingFilter {
   double turned_ = 0.0;  ///< chance that the robot faces the other way
   Eigen::Vector2d turned_about_ = Eigen::Vector2d::Zero();
   FlowTrust flow_trust_;
-  int gated_ = 0;  ///< frames in a row, weighed
+  double gated_ = 0.0;                          ///< frames in a row, weighed
+  std::optional<Eigen::Vector2d> contradicts_;  ///< a patch that did so alone, as it was believed
+  std::vector<PatchOnCeiling> before_;          ///< of the last update
+  bool flow_misled_ = false;                    ///< patches moved otherwise, and none with it since
   /// Of the motion in a tick of the odometry lately, at most; world frame.
   Eigen::Matrix3d lively_Q_ = Eigen::Matrix3d::Zero();
   double unknown_s_ = 0.0;     ///< for how long nothing was known of the motion
   double flow_alone_s_ = 0.0;  ///< for how long only the flow told it, since patches last agreed
   Stamp stamp_;
+  Stamp updated_;
   Belief belief_;
 };
 

@@ -13,12 +13,17 @@ struct PatchFinderParams {
   bool polarity = true;          ///< whether the forward end is drawn in to a tongue
   double scale_sigma = 0.03;     ///< of the image's size, relative
   double max_scale_error = 0.1;  ///< a patch of another size is none
-  double blur_px = 0.76;       ///< σ of an edge, the pixel's own share in it, where the fit begins
-  double min_contrast = 40.0;  ///< to the ceiling beside it, grey levels
+  double blur_px = 0.76;  ///< σ of an edge, the pixel's own share in it, where the fit begins
+  /// Of the ceiling's grey level beside it, that a patch is darker at least: what its paint makes
+  /// of any light.
+  double min_contrast = 0.22;
+  double enough_contrast = 40.0;  ///< grey levels: so much is in any light
+  double least_contrast = 10.0;   ///< … and less is in none
+  double contrast_to_noise = 5.0;
   /// Rms of the fit's residuals by the contrast, at most; of what neighbours share in them, by so
   /// much less as the edges are blurred more than expected.
   double max_misfit = 0.12;
-  double max_noise = 12.0;  ///< … or this, grey levels, where that is more
+  double max_noise = 12.0;  ///< … or this, grey levels, of a patch of enough contrast
 };
 
 /// What a frame shows of a patched ceiling.
