@@ -200,8 +200,8 @@ INSTANTIATE_TEST_SUITE_P(
     OfTheGround, WorldMistake,
     testing::Values(
         ramp(
-            ", [9, 3]]}", "]}",
-            "5:3: ground: the pieces must cover the room once: they have 23.000000 m² and the room "
+            "[[9, 0], [13, 0], [13, 3], [9, 3]]", "[[9, 0], [13, 0], [13, 2], [9, 2]]",
+            "5:3: ground: the pieces must cover the room once: they have 25.000000 m² and the room "
             "29.000000 m²"),
         ramp("uphill_deg: 0", "uphill_deg: 90",
              "5:3: ground: piece 2 of the ground shares no level edge with an earlier one to be "
