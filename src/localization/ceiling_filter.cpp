@@ -24,6 +24,7 @@ constexpr std::int64_t kMostCells = 20000;    // that are hypotheses, where it m
 constexpr std::size_t kMostHypotheses = 200;  // that are told, the likeliest
 constexpr std::ptrdiff_t kMostLacking =
     3;                                  // of patches that a frame lacks for reasons of their own
+constexpr double kSpreadDoubt = 0.1;    // by how much less doubt is borne of one cell among all
 constexpr double kElsewhere = 0.5;      // chance of being in another cell than any of them
 constexpr double kForgotten_px = 40.0;  // beyond the border
 constexpr double kPlain_px = 8.0;       // from the border: a patch there should be found
@@ -72,6 +73,7 @@ void CeilingFilter::reset(Stamp stamp, const Prior& prior, const CeilingCameraEr
   shifts_ = {{CeilingCell{}, 1.0}};
   judged_.clear();
   elsewhere_ = false;
+  spread_ = false;
   cells_unsure_ = false;
   gated_ = 0.0;
   contradicts_.reset();
@@ -499,6 +501,7 @@ void CeilingFilter::spread() {
   hall.last = {hall.last.i + 1, hall.last.j + 1};
   if (hall.count() > kMostCells) return;
   elsewhere_ = false;
+  spread_ = true;
   shifts_.clear();
   judged_.clear();
   const CeilingCell here = nearest_cell(grid_, pose().position());
@@ -570,6 +573,8 @@ void CeilingFilter::judge_presence(const std::vector<Seen>& seen, const Pose2& a
     const auto lacks = std::count_if(lacking.begin(), lacking.end(), has);
     for (std::ptrdiff_t i = 0; i < std::min(lacks, kMostLacking); ++i) weight *= params_.missing;
   }
+  // While several shifts are left a patch that fell off is met again under another of them.
+  if (shifts_.size() > 1) judged.insert(judged_.begin(), judged_.end());
   judged_ = std::move(judged);
 }
 
@@ -820,11 +825,15 @@ void CeilingFilter::refresh_belief() {
   belief_.covariance.diagonal() += Eigen::Vector3d(mount, mount, yaw);
   belief_.hypotheses.clear();
   const double best = shifts_[CeilingCell{}];
-  const bool unsure = best * (1.0 - turned_) < params_.sure || open() || lone_ || elsewhere_;
+  const double doubt = (1.0 - params_.sure) * (spread_ ? kSpreadDoubt : 1.0);
+  const bool unsure = best * (1.0 - turned_) < 1.0 - doubt || open() || lone_ || elsewhere_;
   belief_.status = unsure ? BeliefStatus::ambiguous : BeliefStatus::tracking;
   belief_.lost_probability = std::max(
       {1.0 - best * (1.0 - turned_), lone_ ? kLoneDoubt : 0.0, elsewhere_ ? kElsewhere : 0.0});
-  if (belief_.status == BeliefStatus::tracking) return;
+  if (belief_.status == BeliefStatus::tracking) {
+    spread_ = false;
+    return;
+  }
   for (const auto& [shift, weight] : likeliest_shifts()) {
     const Eigen::Vector2d p = belief_.pose.position() + cell_centre(grid_, shift);
     const double as_believed = weight * (1.0 - turned_);

@@ -185,8 +185,9 @@ class CeilingFilter {
   Eigen::MatrixXd P_;
   std::map<CeilingCell, Eigen::Index> patches_;  ///< where a cell's three states begin
   Shifts shifts_;
+  bool spread_ = false;           ///< over all cells of the hall, and not yet sure of one
   bool elsewhere_ = false;        ///< in a cell, perhaps, that no shift stands for
-  std::set<CeilingCell> judged_;  ///< cells in view whose presence or absence was weighed
+  std::set<CeilingCell> judged_;  ///< cells whose presence or absence was weighed
   bool cells_unsure_ = false;  ///< whether the patches before were perhaps the same in other cells
   /// Of the patch that alone ended a wide prediction, until another agrees.
   std::optional<CeilingCell> lone_;
