@@ -400,7 +400,7 @@ std::vector<std::pair<Belief, Pose2>> kidnapped_under(const CeilingGrid& grid) {
   Pose2 robot{2.2, 3.1, 0.3};
   filter.reset({}, near(robot, 1e-2, 1e-2));
   std::vector<std::pair<Belief, Pose2>> beliefs;
-  for (int i = 0; i < 160; ++i) {
+  for (int i = 0; i < 260; ++i) {
     if (i == 10) robot = {9.4, 7.6, -2.0};
     filter.update(images_about(up_camera(), {}, robot, grid));
     if (i >= 10) beliefs.emplace_back(filter.belief(), robot);
