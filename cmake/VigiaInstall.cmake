@@ -13,6 +13,19 @@ install(DIRECTORY config/ DESTINATION ${CMAKE_INSTALL_DATADIR}/vigia/config COMP
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/vigia RENAME copyright
         COMPONENT runtime)
 
+# The program writes its manual page and its completion itself.
+set(_vigia_words ${PROJECT_BINARY_DIR}/words)
+install(CODE "
+  file(MAKE_DIRECTORY \"${_vigia_words}\")
+  execute_process(COMMAND \"$<TARGET_FILE:vigia>\" help man
+                  OUTPUT_FILE \"${_vigia_words}/vigia.1\" COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND \"$<TARGET_FILE:vigia>\" help completion
+                  OUTPUT_FILE \"${_vigia_words}/vigia\" COMMAND_ERROR_IS_FATAL ANY)"
+        COMPONENT runtime)
+install(FILES ${_vigia_words}/vigia.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)
+install(FILES ${_vigia_words}/vigia DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+        COMPONENT runtime)
+
 set(_vigia_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/vigia)
 install(EXPORT vigiaTargets NAMESPACE vigia:: DESTINATION ${_vigia_package_dir}
         COMPONENT development)

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -282,6 +283,10 @@ std::optional<Eigen::Vector2d> motion_across(const DarkSpot& spot,
 }
 
 constexpr double kMaxLogOdds = 1e3;
+constexpr double kMaxAside_px = 50.0;
+constexpr double kMinMark = 0.08;  // of the squares of a sharp tongue; it fades as the blur grows
+constexpr double kMarkFades = 2.5;
+constexpr double kMovedMarkFades = 1.5;
 constexpr double kOneSidedLogOdds = 30.0;  // the other direction does not come to rest
 constexpr double kMaxTrace_px2 = 0.1;      // of a whole patch's position
 constexpr double kMaxCutTrace_px2 = 4.0;
@@ -295,6 +300,7 @@ struct DirectedFit {
   PatchFit fit;
   double forward_log_odds = 0.0;
   Eigen::Vector2d other = Eigen::Vector2d::Zero();
+  double worse = std::numeric_limits<double>::infinity();  ///< Σ of squares of the other one, more
 };
 std::optional<DirectedFit> better_of(const std::optional<PatchFit>& one,
                                      const std::optional<PatchFit>& other) {
@@ -303,8 +309,27 @@ std::optional<DirectedFit> better_of(const std::optional<PatchFit>& one,
   const PatchFit& best = one->square <= other->square ? *one : *other;
   const double less = std::abs(one->square - other->square);
   const PatchFit& worse = one->square <= other->square ? *other : *one;
-  return DirectedFit{best, std::min(0.5 * less / (best.noise * best.noise), kMaxLogOdds),
-                     worse.shape.uv - best.shape.uv};
+  Eigen::Vector2d aside = worse.shape.uv - best.shape.uv;
+  if (!(aside.norm() < kMaxAside_px)) aside.setZero();  // it was given up
+  return DirectedFit{best, std::min(0.5 * less / (best.noise * best.noise), kMaxLogOdds), aside,
+                     less};
+}
+
+/// What a tongue is to the squares: the grey levels of what it lacks of a body, at either end.
+double tongue_square(const PatchFit& fit, const PatchFinderParams& params) {
+  const double contrast = fit.shape.ground - fit.shape.patch;
+  const double lacking = (1.0 - kTongueWidth) * kTongueLength * params.length_px * params.width_px;
+  return 2.0 * lacking * contrast * contrast;
+}
+
+/// Whether one end of a whole patch is a tongue and the other is none; a slot, a spot or a strip
+/// without a mark is the same either way round.
+bool has_mark(const DirectedFit& directed, const PatchFinderParams& params) {
+  const PatchShape& shape = directed.fit.shape;
+  const double blur = std::sqrt(shape.blur * shape.blur + shape.motion.squaredNorm() / 12.0);
+  const double sharp = std::min(1.0, params.blur_px / blur);
+  const double fades = shape.motion.norm() > 0.0 ? kMovedMarkFades : kMarkFades;
+  return directed.worse >= kMinMark * std::pow(sharp, fades) * tongue_square(directed.fit, params);
 }
 
 /// With the chance that the patch lies the other way round, which moves the middle of one whose end
@@ -480,7 +505,8 @@ class CandidateJudge {
     const auto fit = refine_patch(candidate.window, params_, whole, directed->fit);
     if (!fit) return;
     directed->fit = *fit;
-    if (is_patch(*fit, params_, bound_, whole)) candidate.fit = directed;
+    const bool marked = !whole || !params_.polarity || has_mark(*directed, params_);
+    if (marked && is_patch(*fit, params_, bound_, whole)) candidate.fit = directed;
     if (fit->suspected_motion.norm() == 0.0) return;
     moved.motion = fit->suspected_motion;
     moved.blur = std::sqrt(std::max(params_.blur_px * params_.blur_px,
@@ -495,7 +521,9 @@ class CandidateJudge {
 
  private:
   bool is_moved_patch(const DirectedFit& moved) const {
-    return is_patch(moved.fit, params_, bound_, true) && !is_cut(moved.fit.shape, params_, frame_);
+    return is_patch(moved.fit, params_, bound_, true) &&
+           !is_cut(moved.fit.shape, params_, frame_) &&
+           (!params_.polarity || has_mark(moved, params_));
   }
 
   void try_moved(Candidate& candidate, const std::optional<PatchShape>& start) {

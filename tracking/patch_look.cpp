@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include "vigia/core/angle.hpp"
 
@@ -388,6 +389,22 @@ void expect_look(LookSums& sums, const PatchShape& shape, const LookPriors& prio
     sums.expect(k, moved ? shape.motion[k - kMotionU] : 0.0, of_motion);
 }
 
+/// What is shared, added to what white residuals leave. Correlations of a few lags need not be
+/// those of anything: no combination of u, v and angle is taken for known much better for it.
+Eigen::Matrix3d beside_white(const Eigen::Matrix3d& white, const Eigen::Matrix3d& excess) {
+  constexpr double kLeast = 0.5;  // of the white variance
+  const Eigen::LLT<Eigen::Matrix3d> root(white);
+  if (root.info() != Eigen::Success) return white;
+  const Eigen::Matrix3d L = root.matrixL();
+  const Eigen::Matrix3d half = root.matrixL().solve(excess);
+  const Eigen::Matrix3d whitened = root.matrixL().solve(half.transpose());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(0.5 *
+                                                            (whitened + whitened.transpose()));
+  const Eigen::Vector3d variances = (axes.eigenvalues().array() + 1.0).max(kLeast).matrix();
+  const Eigen::Matrix3d turned = L * axes.eigenvectors();
+  return turned * variances.asDiagonal() * turned.transpose();
+}
+
 void state_covariance(const std::vector<BandPixel>& pixels, const LookSums& sums, PatchFit& fit) {
   const LookNormal inverse = sums.normal.ldlt().solve(LookNormal::Identity());
   const double noise = sums.noise();
@@ -398,7 +415,8 @@ void state_covariance(const std::vector<BandPixel>& pixels, const LookSums& sums
   if (correlations.size() > 1) {
     fit.misfit = noise * std::sqrt(1.0 - 1.0 / variance_factor(correlations));
     const InfluenceGrid influence(pixels, sums.rows, inverse);
-    covariance += shared_covariance(influence, correlations) - shared_covariance(influence, {1.0});
+    covariance = beside_white(covariance, shared_covariance(influence, correlations) -
+                                              shared_covariance(influence, {1.0}));
   }
   fit.covariance = noise * noise * covariance;
 }

@@ -1,4 +1,7 @@
+#include "command_tree.hpp"
 #include "commands.hpp"
+#include "manual_page.hpp"
+#include "shell_completion.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -147,30 +150,35 @@ void print_names(const std::vector<Entry>& entries, Form form) {
 struct Topic {
   std::string name;
   std::string meaning;
-  void (*print)(const HelpOptions& options);
+  void (*print)(const CLI::App& app, const HelpOptions& options);
 };
 
 const std::vector<Topic>& topics() {
   static const std::vector<Topic> table{
-      {"keys", "every key of a mission, its world and robot, and of a campaign", &print_keys},
+      {"keys", "every key of a mission, its world and robot, and of a campaign",
+       [](const CLI::App&, const HelpOptions& options) { print_keys(options); }},
       {"localizers", "who may estimate the pose",
-       [](const HelpOptions& options) { print_names(mission::localizers(), options.form()); }},
+       [](const CLI::App&, const HelpOptions& options) {
+         print_names(mission::localizers(), options.form());
+       }},
       {"trackers", "who may find landmarks in a picture",
-       [](const HelpOptions& options) { print_names(tracking::trackers(), options.form()); }},
+       [](const CLI::App&, const HelpOptions& options) {
+         print_names(tracking::trackers(), options.form());
+       }},
       {"eyes", "who may turn a camera's pictures into observations",
-       [](const HelpOptions& options) { print_names(perception::eyes(), options.form()); }},
+       [](const CLI::App&, const HelpOptions& options) {
+         print_names(perception::eyes(), options.form());
+       }},
       {"policies", "who may choose the next landmark",
-       [](const HelpOptions& options) { print_names(planner::look_policies(), options.form()); }},
+       [](const CLI::App&, const HelpOptions& options) {
+         print_names(planner::look_policies(), options.form());
+       }},
+      {"man", "the manual page, for man(1)",
+       [](const CLI::App& app, const HelpOptions&) { fmt::print("{}", manual_page(app)); }},
+      {"completion", "completes commands, options and file names in bash",
+       [](const CLI::App& app, const HelpOptions&) { fmt::print("{}", bash_completion(app)); }},
   };
   return table;
-}
-
-/// The program's commands by name.
-std::vector<std::string> command_names(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-    names.push_back(command->get_name());
-  return names;
 }
 
 void print_overview(const CLI::App& app) {
@@ -182,13 +190,13 @@ void print_overview(const CLI::App& app) {
 
 void help(const CLI::App& app, const HelpOptions& options) {
   if (options.topic.empty()) return print_overview(app);
-  std::vector<std::string> names = command_names(app);
+  std::vector<std::string> names = names_of(commands_below(app));
   if (std::find(names.begin(), names.end(), options.topic) != names.end()) {
     fmt::print("{}", app.get_subcommand(options.topic)->help());
     return;
   }
   for (const Topic& topic : topics()) {
-    if (topic.name == options.topic) return topic.print(options);
+    if (topic.name == options.topic) return topic.print(app, options);
     names.push_back(topic.name);
   }
   throw InputError(fmt::format("there is no help on '{}'{} (known: {})", options.topic,
@@ -203,7 +211,7 @@ void add_help(CLI::App& app, int& status) {
       "help",
       "Explain a command, the keys of the YAML files, localizers, trackers, eyes, policies");
   command->add_option("topic", options->topic,
-                      "A command, keys, localizers, trackers, eyes or policies");
+                      "A command, keys, localizers, trackers, eyes, policies, man or completion");
   command->add_option("prefix", options->prefix, "Of the keys, e.g. planner.fuzzy");
   command->add_flag("--flat", options->flat, "Not the keys of the maps below the prefix");
   command->add_flag("--json", options->json, "Print as JSON");

@@ -1,5 +1,7 @@
 #include "usage_mistake.hpp"
 
+#include "command_tree.hpp"
+
 #include <algorithm>
 #include <utility>
 #include <vector>
@@ -10,20 +12,6 @@
 
 namespace vigia::app {
 namespace {
-
-std::vector<std::string> commands_of(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-    names.push_back(command->get_name());
-  return names;
-}
-
-std::vector<std::string> options_of(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : app.get_options())
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  return names;
-}
 
 /// The command that the line reached: "landmark tag" in `vigia landmark tag --idd 5`.
 const CLI::App& reached(const CLI::App& app) {
@@ -39,12 +27,12 @@ std::string usage_mistake(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App& command = reached(app);
   const std::string& word = unknown.front();
   if (word.front() == '-') {
-    const auto options = options_of(command);
+    const auto options = long_options_of(command);
     const std::string name = word.substr(0, word.find('='));
     return fmt::format("unknown option '{}'{} (options: {})", name, suggestion(name, options),
                        joined(options));
   }
-  const auto commands = commands_of(command);
+  const auto commands = names_of(commands_below(command));
   if (commands.empty()) return fmt::format("'{}' is one argument too many", word);
   return fmt::format("unknown command '{}'{} (commands: {})", word, suggestion(word, commands),
                      joined(commands));

@@ -20,9 +20,7 @@ void describe_gap(ParamVisitor& v, CeilingGrid& grid) {
   CeilingGrid::Extent gap;
   describe_rectangle(v, gap, "corner of the gap with the lesser x and y", "the opposite one",
                      "the gap ends before it begins");
-  const Eigen::Array2d first = (gap.min.array() / grid.pitch_m).ceil();
-  const Eigen::Array2d last = (gap.max.array() / grid.pitch_m).floor();
-  v.require(v.reader() == nullptr || (first <= last).all(), "max_m",
+  v.require(v.reader() == nullptr || cells_in(grid, gap).count() > 0, "max_m",
             "no patch's place lies in this gap: they are at the multiples of pitch_m");
   if (v.reader() != nullptr) grid.gaps.push_back(gap);
 }
@@ -58,16 +56,28 @@ CeilingCell nearest_cell(const CeilingGrid& grid, const Eigen::Vector2d& p) {
   return {std::llround(p.x() / grid.pitch_m), std::llround(p.y() / grid.pitch_m)};
 }
 
+std::int64_t CeilingCells::count() const {
+  return std::max<std::int64_t>(0, last.i - first.i + 1) *
+         std::max<std::int64_t>(0, last.j - first.j + 1);
+}
+
+CeilingCells cells_in(const CeilingGrid& grid, const CeilingGrid::Extent& rectangle) {
+  constexpr double kRounding = 1e-6;  // of the pitch
+  const Eigen::Array2d from = (rectangle.min.array() / grid.pitch_m - kRounding).ceil();
+  const Eigen::Array2d to = (rectangle.max.array() / grid.pitch_m + kRounding).floor();
+  return {{static_cast<std::int64_t>(from.x()), static_cast<std::int64_t>(from.y())},
+          {static_cast<std::int64_t>(to.x()), static_cast<std::int64_t>(to.y())}};
+}
+
 bool is_endless(const CeilingGrid& grid) {
   return !grid.extent && grid.gaps.empty();
 }
 
 bool has_patch(const CeilingGrid& grid, const CeilingCell& cell) {
-  if (is_endless(grid)) return true;
-  const Eigen::Vector2d p = cell_centre(grid, cell);
-  if (grid.extent && !grid.extent->contains(p)) return false;
-  return std::none_of(grid.gaps.begin(), grid.gaps.end(),
-                      [&](const CeilingGrid::Extent& gap) { return gap.contains(p); });
+  if (grid.extent && !cells_in(grid, *grid.extent).contains(cell)) return false;
+  return std::none_of(grid.gaps.begin(), grid.gaps.end(), [&](const CeilingGrid::Extent& gap) {
+    return cells_in(grid, gap).contains(cell);
+  });
 }
 
 }  // namespace vigia

@@ -30,12 +30,17 @@ bool on_face(const Wall& face, double fraction) {
 double ray_distance(const Eigen::Vector2d& origin, const Eigen::Vector2d& direction,
                     const Wall& face) {
   constexpr double kMissed = std::numeric_limits<double>::infinity();
+  constexpr double kClear = 1e-6;  // m, well beyond kSeam
+  const double right_of_a = cross(direction, face.a - origin);
+  const double right_of_b = cross(direction, face.b - origin);
+  if (std::min(right_of_a, right_of_b) > kClear || std::max(right_of_a, right_of_b) < -kClear)
+    return kMissed;
   const auto crossing = cross_lines(origin, origin + direction, face.a, face.b);
   if (crossing) {
     const bool met = crossing->along_pq >= -kSeam && on_face(face, crossing->along_ab);
     return met ? std::max(0.0, crossing->along_pq) : kMissed;
   }
-  if (std::abs(cross(direction, face.a - origin)) > kSeam) return kMissed;
+  if (std::abs(right_of_a) > kSeam) return kMissed;
   const auto [low, high] =
       std::minmax({direction.dot(face.a - origin), direction.dot(face.b - origin)});
   return high < 0.0 ? kMissed : std::max(0.0, low);

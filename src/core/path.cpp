@@ -51,6 +51,8 @@ double Path::project(const Eigen::Vector2d& p, double from, double to) const {
   double best_distance = std::numeric_limits<double>::infinity();
   for (std::size_t i = segment_at(stations_, low); i + 1 < points_.size() && stations_[i] <= high;
        ++i) {
+    const double reach = best_distance + (stations_[i + 1] - stations_[i]) + kSamePoint;
+    if ((p - points_[i]).squaredNorm() > reach * reach) continue;  // no point of it is nearer
     const Eigen::Vector2d along = (points_[i + 1] - points_[i]).normalized();
     const double s = std::clamp(stations_[i] + (p - points_[i]).dot(along),
                                 std::max(low, stations_[i]), std::min(high, stations_[i + 1]));

@@ -20,6 +20,12 @@ constexpr double kPatchAgrees_m = 0.06;  // two patches of one grid, whatever th
 constexpr double kDirected = 5.0;        // log-odds
 constexpr int kFarthestShift = 6;        // cells that are weighed each way, at most
 constexpr double kNegligible = 1e-6;
+constexpr std::int64_t kMostCells = 20000;    // that are hypotheses, where it may be anywhere
+constexpr std::size_t kMostHypotheses = 200;  // that are told, the likeliest
+constexpr std::ptrdiff_t kMostLacking =
+    3;                                  // of patches that a frame lacks for reasons of their own
+constexpr double kSpreadDoubt = 0.1;    // by how much less doubt is borne of one cell among all
+constexpr double kElsewhere = 0.5;      // chance of being in another cell than any of them
 constexpr double kForgotten_px = 40.0;  // beyond the border
 constexpr double kPlain_px = 8.0;       // from the border: a patch there should be found
 constexpr int kIterations = 5;
@@ -66,6 +72,8 @@ void CeilingFilter::reset(Stamp stamp, const Prior& prior, const CeilingCameraEr
   patches_.clear();
   shifts_ = {{CeilingCell{}, 1.0}};
   judged_.clear();
+  elsewhere_ = false;
+  spread_ = false;
   cells_unsure_ = false;
   gated_ = 0.0;
   contradicts_.reset();
@@ -473,9 +481,38 @@ std::vector<CeilingFilter::Seen> CeilingFilter::passed_gate(const std::vector<Se
 /// the fix is as many cells aside again.
 void CeilingFilter::weigh_shifts(const Linearised& all, const std::vector<Seen>& seen,
                                  const Pose2& at) {
-  const int reach =
-      std::clamp(static_cast<int>(std::ceil(5.0 * belief_.position_sigma() / grid_.pitch_m)), 1,
-                 kFarthestShift);
+  const double cells = std::ceil(5.0 * belief_.position_sigma() / grid_.pitch_m);
+  if (!(cells <= kFarthestShift)) {
+    spread();
+  } else {
+    shift_by_chance(all, at, std::max(1, static_cast<int>(cells)));
+  }
+  judge_presence(seen, at);
+  normalise_shifts();
+}
+
+/// It may be in any cell.
+void CeilingFilter::spread() {
+  elsewhere_ = true;
+  if (!grid_.extent) return;
+  CeilingCells hall = cells_in(grid_, *grid_.extent);
+  // As far as a robot under the last patches may be from the middle of their cell.
+  hall.first = {hall.first.i - 1, hall.first.j - 1};
+  hall.last = {hall.last.i + 1, hall.last.j + 1};
+  if (hall.count() > kMostCells) return;
+  elsewhere_ = false;
+  spread_ = true;
+  shifts_.clear();
+  judged_.clear();
+  const CeilingCell here = nearest_cell(grid_, pose().position());
+  const double each = 1.0 / static_cast<double>(hall.count());
+  for (std::int64_t i = hall.first.i; i <= hall.last.i; ++i)
+    for (std::int64_t j = hall.first.j; j <= hall.last.j; ++j)
+      shifts_[{i - here.i, j - here.j}] = each;
+}
+
+/// @p reach: cells that the prediction may be off, each way.
+void CeilingFilter::shift_by_chance(const Linearised& all, const Pose2& at, int reach) {
   // Of the shift (i, j) the residuals are less by aside · (i, j), the same two columns of every
   // patch.
   Eigen::MatrixXd aside = Eigen::MatrixXd::Zero(all.y.size(), 2);
@@ -485,35 +522,36 @@ void CeilingFilter::weigh_shifts(const Linearised& all, const std::vector<Seen>&
   const Eigen::MatrixXd weighed_aside = S.solve(aside);
   const Eigen::Matrix2d squares = aside.transpose() * weighed_aside;
   const Eigen::Vector2d slopes = weighed_aside.transpose() * all.y;
-  Shifts weighed;
-  std::map<CeilingCell, double> moved;  // χ² beside that of no shift
+  std::vector<std::pair<CeilingCell, double>> moved;  // χ² beside that of no shift
   double least = std::numeric_limits<double>::infinity();
   for (std::int64_t i = -reach; i <= reach; ++i) {
     for (std::int64_t j = -reach; j <= reach; ++j) {
       const Eigen::Vector2d by(static_cast<double>(i), static_cast<double>(j));
       const double square = by.dot(squares * by - 2.0 * slopes);
-      moved[{i, j}] = square;
+      moved.push_back({{i, j}, square});
       least = std::min(least, square);
     }
   }
-  for (const auto& [from, weight] : shifts_) {
-    for (const auto& [by, square] : moved) {
-      const CeilingCell to{from.i + by.i, from.j + by.j};
-      weighed[to] += weight * std::exp(-0.5 * (square - least));
-    }
+  Shifts weighed;
+  for (const auto& [by, square] : moved) {
+    const double chance = std::exp(-0.5 * (square - least));
+    if (chance < kNegligible * kNegligible) continue;
+    for (const auto& [from, weight] : shifts_)
+      weighed[{from.i + by.i, from.j + by.j}] += weight * chance;
   }
   shifts_ = std::move(weighed);
-  judge_presence(seen, at);
-  normalise_shifts();
 }
 
 /// Patches where a shift has none, and none where it has one. Each cell is judged once while it is
-/// in view: a patch that fell off is missing in every frame for one and the same reason.
+/// in view: a patch that fell off is missing in every frame for one and the same reason; so may
+/// many be that a frame lacks, behind a glare or a person.
 void CeilingFilter::judge_presence(const std::vector<Seen>& seen, const Pose2& at) {
-  if (is_endless(grid_)) return;
+  if (is_endless(grid_) || elsewhere_) return;
   std::set<CeilingCell> present;
   for (const Seen& one : seen) present.insert(one.cell);
   std::set<CeilingCell> judged;
+  std::vector<CeilingCell> appeared;
+  std::vector<CeilingCell> lacking;
   const CeilingCell middle = nearest_cell(grid_, at.position());
   const int reach = static_cast<int>(std::ceil(2.0 * camera_.rise_m() / grid_.pitch_m));
   for (std::int64_t i = middle.i - reach; i <= middle.i + reach; ++i) {
@@ -523,13 +561,20 @@ void CeilingFilter::judge_presence(const std::vector<Seen>& seen, const Pose2& a
       if (!there && !in_sight(cell, at, kPlain_px)) continue;
       judged.insert(cell);
       if (judged_.count(cell) > 0) continue;
-      for (auto& [shift, weight] : shifts_) {
-        const bool has = has_patch(grid_, {i + shift.i, j + shift.j});
-        if (there && !has) weight *= params_.spurious;
-        if (!there && has) weight *= params_.missing;
-      }
+      (there ? appeared : lacking).push_back(cell);
     }
   }
+  for (auto& [shift, weight] : shifts_) {
+    const auto has = [&, by = shift](const CeilingCell& cell) {
+      return has_patch(grid_, {cell.i + by.i, cell.j + by.j});
+    };
+    for (const CeilingCell& cell : appeared)
+      if (!has(cell)) weight *= params_.spurious;
+    const auto lacks = std::count_if(lacking.begin(), lacking.end(), has);
+    for (std::ptrdiff_t i = 0; i < std::min(lacks, kMostLacking); ++i) weight *= params_.missing;
+  }
+  // While several shifts are left a patch that fell off is met again under another of them.
+  if (shifts_.size() > 1) judged.insert(judged_.begin(), judged_.end());
   judged_ = std::move(judged);
 }
 
@@ -542,13 +587,13 @@ void CeilingFilter::normalise_shifts() {
   shifts_ = std::move(kept);
 }
 
-/// Patches contradict the prediction again and again: it may be anywhere in its cell and the next,
-/// turned anyhow.
+/// Patches contradict the prediction again and again: it may be anywhere, turned anyhow.
 void CeilingFilter::doubt() {
   const double sigma = 0.5 * grid_.pitch_m;
   P_.topRows<3>().setZero();
   P_.leftCols<3>().setZero();
   P_.diagonal().head<3>() << sigma * sigma, sigma * sigma, kPi * kPi / 3.0;
+  spread();
   gated_ = 0.0;
   contradicts_.reset();
 }
@@ -732,6 +777,12 @@ CeilingUpdate CeilingFilter::update(const std::vector<PatchImage>& patches) {
   return CeilingUpdate::fused;
 }
 
+void CeilingFilter::take_cell_as_given() {
+  shifts_ = {{CeilingCell{}, 1.0}};
+  elsewhere_ = false;
+  refresh_belief();
+}
+
 void CeilingFilter::place(const CeilingTruthState& truth) {
   x_.setZero();
   x_.head<3>() = truth.pose.vector();
@@ -752,6 +803,19 @@ void CeilingFilter::inform(const CeilingTruthState& truth, const std::vector<Pat
   place(truth);
 }
 
+std::vector<std::pair<CeilingCell, double>> CeilingFilter::likeliest_shifts() const {
+  std::vector<std::pair<CeilingCell, double>> shifts(shifts_.begin(), shifts_.end());
+  if (shifts.size() <= kMostHypotheses) return shifts;
+  const auto end = shifts.begin() + static_cast<std::ptrdiff_t>(kMostHypotheses);
+  std::nth_element(shifts.begin(), end, shifts.end(), [](const auto& a, const auto& b) {
+    return a.second != b.second ? a.second > b.second : a.first < b.first;
+  });
+  shifts.erase(end, shifts.end());
+  std::sort(shifts.begin(), shifts.end(),
+            [](const auto& a, const auto& b) { return a.first < b.first; });
+  return shifts;
+}
+
 void CeilingFilter::refresh_belief() {
   belief_.stamp = stamp_;
   belief_.pose = pose();
@@ -761,11 +825,16 @@ void CeilingFilter::refresh_belief() {
   belief_.covariance.diagonal() += Eigen::Vector3d(mount, mount, yaw);
   belief_.hypotheses.clear();
   const double best = shifts_[CeilingCell{}];
-  const bool unsure = best * (1.0 - turned_) < params_.sure || open() || lone_;
+  const double doubt = (1.0 - params_.sure) * (spread_ ? kSpreadDoubt : 1.0);
+  const bool unsure = best * (1.0 - turned_) < 1.0 - doubt || open() || lone_ || elsewhere_;
   belief_.status = unsure ? BeliefStatus::ambiguous : BeliefStatus::tracking;
-  belief_.lost_probability = std::max(1.0 - best * (1.0 - turned_), lone_ ? kLoneDoubt : 0.0);
-  if (belief_.status == BeliefStatus::tracking) return;
-  for (const auto& [shift, weight] : shifts_) {
+  belief_.lost_probability = std::max(
+      {1.0 - best * (1.0 - turned_), lone_ ? kLoneDoubt : 0.0, elsewhere_ ? kElsewhere : 0.0});
+  if (belief_.status == BeliefStatus::tracking) {
+    spread_ = false;
+    return;
+  }
+  for (const auto& [shift, weight] : likeliest_shifts()) {
     const Eigen::Vector2d p = belief_.pose.position() + cell_centre(grid_, shift);
     const double as_believed = weight * (1.0 - turned_);
     belief_.hypotheses.push_back(

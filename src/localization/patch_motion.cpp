@@ -13,8 +13,8 @@ namespace {
 
 // Of a patch's image in two frames beside what it states: the texture beside it moves through the
 // pixels.
-constexpr double kImageSlack_m = 0.003;
-constexpr double kImageSlackTurn = from_deg(0.5);
+constexpr double kImageSlack_m = 0.001;
+constexpr double kImageSlackTurn = from_deg(0.3);
 constexpr double kRestSlack_m = 0.02;
 constexpr double kRestSlackTurn = from_deg(4.0);
 

@@ -113,6 +113,7 @@ CeilingFollower::Sight CeilingFollower::look(const vpImage<unsigned char>& pictu
 
 CeilingFollower::Step CeilingFollower::follow(const Sight& sight) {
   Step step{sight.scan, sight.motion.has_value(), std::nullopt};
+  const bool first = !begun_;
   if (!begun_) {
     begun_ = begin(step.scan, sight.stamp);
     if (!begun_) return step;
@@ -122,6 +123,7 @@ CeilingFollower::Step CeilingFollower::follow(const Sight& sight) {
     filter_.predict_unknown(sight.stamp);
   }
   step.update = filter_.update(step.scan.patches);
+  if (first) filter_.take_cell_as_given();
   return step;
 }
 

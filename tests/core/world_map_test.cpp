@@ -94,6 +94,16 @@ TEST(WorldMap, ACeilingHasPatchesButInItsGaps) {
       if (!has_patch(*world.ceiling, {i, j})) missing.insert({i, j});
   const std::set<std::pair<std::int64_t, std::int64_t>> expected{{3, 3}, {4, 3}, {7, 1}};
   EXPECT_EQ(missing, expected);
+  // Whatever the last digits of the pitch's multiples.
+  for (const char* pitch : {"0.3", "0.7", "0.4", "1.1"}) {
+    const double at = 3.0 * std::stod(pitch);
+    const std::string corner = "[" + std::to_string(at) + ", " + std::to_string(at) + "]";
+    const WorldMap fine =
+        read_world(std::string(kHall) + "  pitch_m: " + pitch + "\n  gaps: [{min_m: " + corner +
+                   ", max_m: " + corner + "}]\n");
+    EXPECT_FALSE(has_patch(*fine.ceiling, {3, 3})) << pitch;
+    EXPECT_TRUE(has_patch(*fine.ceiling, {3, 2})) << pitch;
+  }
   EXPECT_TRUE(is_endless(*read_world(std::string(kHall) + "  pitch_m: 2\n").ceiling));
 }
 

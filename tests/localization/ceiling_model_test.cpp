@@ -1,5 +1,9 @@
 #include "vigia/localization/ceiling_model.hpp"
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 #include <gtest/gtest.h>
 
 #include "vigia/core/angle.hpp"
@@ -385,6 +389,58 @@ TEST(CeilingFilter, AMappedGapSettlesWhichCellItIs) {
     else
       EXPECT_GT(weight_in_other_columns(filter.belief(), robot), 0.2);
   }
+}
+
+/// Tracks, is put down elsewhere, and drives on past gaps by its odometry; the beliefs from then
+/// on.
+std::vector<std::pair<Belief, Pose2>> kidnapped_under(const CeilingGrid& grid) {
+  CeilingFilterParams params;
+  params.odometry = {0.02, 0.01, 0.02};
+  CeilingFilter filter(up_camera(), grid, params);
+  Pose2 robot{2.2, 3.1, 0.3};
+  filter.reset({}, near(robot, 1e-2, 1e-2));
+  std::vector<std::pair<Belief, Pose2>> beliefs;
+  for (int i = 0; i < 260; ++i) {
+    if (i == 10) robot = {9.4, 7.6, -2.0};
+    filter.update(images_about(up_camera(), {}, robot, grid));
+    if (i >= 10) beliefs.emplace_back(filter.belief(), robot);
+    const OdometryIncrement u{filter.belief().stamp, Stamp::from_seconds(0.1 * (i + 1)), 0.005,
+                              0.05, 0.005};
+    robot = move(robot, u);
+    filter.predict(u);
+  }
+  return beliefs;
+}
+
+int tracking_elsewhere(const std::vector<std::pair<Belief, Pose2>>& beliefs) {
+  return static_cast<int>(std::count_if(beliefs.begin(), beliefs.end(), [](const auto& one) {
+    return one.first.status == BeliefStatus::tracking &&
+           (one.first.pose.position() - one.second.position()).norm() > 0.5;
+  }));
+}
+
+CeilingGrid grid_with_gaps() {
+  CeilingGrid grid;
+  grid.gaps = {{{1, 1}, {1, 2}}, {{4, 6}, {5, 6}}, {{8, 5}, {8, 5}}, {{9, 8}, {10, 9}},
+               {{6, 2}, {6, 3}}, {{2, 9}, {3, 9}}, {{7, 8}, {7, 8}}, {{10, 4}, {11, 4}}};
+  return grid;
+}
+
+TEST(CeilingFilter, PutDownElsewhereInAHallItFindsItselfByTheGaps) {
+  CeilingGrid grid = grid_with_gaps();
+  grid.extent = CeilingGrid::Extent{{0, 0}, {12, 12}};
+  const auto beliefs = kidnapped_under(grid);
+  EXPECT_LE(tracking_elsewhere(beliefs), 3);
+  const auto& [last, truth] = beliefs.back();
+  EXPECT_EQ(last.status, BeliefStatus::tracking);
+  EXPECT_LT((last.pose.position() - truth.position()).norm(), 0.02);
+}
+
+TEST(CeilingFilter, PutDownElsewhereUnderAGridWithoutEdgeItIsNeverSureAgain) {
+  const auto beliefs = kidnapped_under(grid_with_gaps());
+  EXPECT_LE(tracking_elsewhere(beliefs), 3);
+  EXPECT_EQ(beliefs.back().first.status, BeliefStatus::ambiguous);
+  EXPECT_GE(beliefs.back().first.lost_probability, 0.5);
 }
 
 TEST(CeilingFilter, APatchWhoseTwoImagesDisagreeIsForgotten) {

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <functional>
 #include <set>
+#include <sstream>
 #include <utility>
 
 #include <gmock/gmock.h>
@@ -145,6 +146,40 @@ TEST_F(Program, HasTheTablesOfKeysThatThePagesShow) {
   const auto result = vigia::testing::run_process(
       std::string(VIGIA_SOURCE_DIR) + "/.ci/check-key-tables " + VIGIA_PROGRAM, dir_.path());
   EXPECT_EQ(result.status, 0) << result.out << result.err;
+}
+
+TEST_F(Program, WritesItsManualPageWithEveryCommandAndOption) {
+  const auto page = vigia("help man");
+  ASSERT_EQ(page.status, 0) << page.err;
+  EXPECT_THAT(page.out, ::testing::StartsWith(".TH VIGIA 1 "));
+  for (const char* words : {".SS \"vigia run\"", ".SS \"vigia campaign run\\-shard\"",
+                            "\\fB\\-\\-no\\-report\\fR", "(default: ", ".SH \"EXIT STATUS\""})
+    EXPECT_THAT(page.out, HasSubstr(words));
+  // A line that begins with a point is a request; nothing else may.
+  std::istringstream lines(page.out);
+  const std::set<std::string> requests{".TH", ".SH", ".SS", ".TP", ".PP", ".nf", ".fi"};
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty() || (line.front() != '.' && line.front() != '\'')) continue;
+    EXPECT_EQ(requests.count(line.substr(0, line.find(' '))), 1U) << line;
+  }
+}
+
+TEST_F(Program, CompletesCommandsAndOptionsInBash) {
+  const auto script = vigia("help completion");
+  ASSERT_EQ(script.status, 0) << script.err;
+  const fs::path completion = file("completion", script.out);
+  const auto completed = [&](const std::string& line) {
+    const fs::path asked =
+        file("ask.sh", ". " + completion.string() + "\nCOMP_WORDS=(vigia " + line +
+                           ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_vigia\n"
+                           "echo \"${COMPREPLY[*]}\"\n");
+    return vigia::testing::run_process("bash " + asked.string(), dir_.path()).out;
+  };
+  EXPECT_EQ(completed("ru"), "run\n");
+  EXPECT_EQ(completed("campaign ''"), "plan run-shard status merge\n");
+  EXPECT_EQ(completed("run x.yaml --se"), "--seed --set\n");
+  EXPECT_EQ(completed("landmark tag --i"), "--id\n");
+  EXPECT_EQ(completed("run con"), "\n");
 }
 
 TEST_F(Program, TellsItsVersion) {

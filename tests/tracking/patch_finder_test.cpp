@@ -147,6 +147,56 @@ TEST(PatchFinder, FindsPatchesInLittleLight) {
   }
 }
 
+/// Dark slots with round ends, of a patch's size, as in a perforated ceiling.
+vpImage<unsigned char> slots(double turn, std::uint64_t seed) {
+  constexpr int kFine = 4;
+  cv::Mat fine(kFine * 480, kFine * 640, CV_32F, cv::Scalar(190.0));
+  const Eigen::Vector2d along(std::cos(turn), std::sin(turn));
+  for (int u = 40; u < 620; u += 50) {
+    for (int v = 40; v < 460; v += 50) {
+      const Eigen::Vector2d a = Eigen::Vector2d(u, v) - 7.5 * along;
+      const Eigen::Vector2d b = Eigen::Vector2d(u, v) + 7.5 * along;
+      const auto at = [&](const Eigen::Vector2d& p) {
+        return cv::Point(static_cast<int>(std::lround(kFine * p.x())),
+                         static_cast<int>(std::lround(kFine * p.y())));
+      };
+      cv::line(fine, at(a), at(b), cv::Scalar(60.0), kFine * 7);
+    }
+  }
+  cv::Mat light;
+  cv::resize(fine, light, {640, 480}, 0.0, 0.0, cv::INTER_AREA);
+  cv::GaussianBlur(light, light, {}, 0.6);
+  RandomStream random(seed, "slots");
+  vpImage<unsigned char> image(480, 640);
+  for (int v = 0; v < 480; ++v)
+    for (int u = 0; u < 640; ++u)
+      image[static_cast<unsigned>(v)][static_cast<unsigned>(u)] = static_cast<unsigned char>(
+          std::clamp(std::lround(light.at<float>(v, u) + 3.0 * random.normal()), 0L, 255L));
+  return image;
+}
+
+TEST(PatchFinder, TakesNoSlotForAPatchWithAMark) {
+  for (const double turn : {0.0, 0.4, 1.2}) {
+    const auto image = slots(turn, 5);
+    EXPECT_TRUE(PatchFinder().find(imaging::ImageFrame(image)).patches.empty()) << turn;
+  }
+}
+
+TEST(PatchFinder, StatesCovariancesThatAreSome) {
+  sim::CeilingTruth truth;
+  const CeilingScene scene(truth, 2.0);
+  RandomStream random(9, "poses");
+  int seen = 0;
+  for (int k = 0; k < 40; ++k) {
+    const Pose2 robot{random.uniform(-40, 40), random.uniform(-40, 40), 0.0};
+    for (const PatchImage& patch : PatchFinder().find(*scene.expose(robot, k)).patches) {
+      ++seen;
+      EXPECT_EQ(Eigen::LLT<Eigen::Matrix3d>(patch.covariance).info(), Eigen::Success);
+    }
+  }
+  EXPECT_GT(seen, 100);
+}
+
 TEST(PatchFinder, SaysOfCutPatchesWhatTheyStillTell) {
   const PatchTally tally = tally_frames(CeilingScene({}, 0.0));
   ASSERT_GT(tally.cut, 10);

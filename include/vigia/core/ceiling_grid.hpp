@@ -28,9 +28,6 @@ struct CeilingGrid {
   struct Extent {
     Eigen::Vector2d min = Eigen::Vector2d::Zero();
     Eigen::Vector2d max = Eigen::Vector2d::Zero();
-    bool contains(const Eigen::Vector2d& p) const {
-      return (p.array() >= min.array()).all() && (p.array() <= max.array()).all();
-    }
   };
   std::optional<Extent> extent;  ///< where patches hang at all; nothing: everywhere
   /// Where none hangs, and the map says so: skylights, a stairwell, a gallery. A patch is missing
@@ -65,6 +62,19 @@ void describe(ParamVisitor& v, CeilingGrid& grid);
 Eigen::Vector2d cell_centre(const CeilingGrid& grid, const CeilingCell& cell);
 /// The cell whose centre is nearest.
 CeilingCell nearest_cell(const CeilingGrid& grid, const Eigen::Vector2d& p);
+/// The cells whose patches lie in a rectangle; as many as the pitch goes into it, whatever its
+/// corners' last digits.
+struct CeilingCells {
+  CeilingCell first;
+  CeilingCell last;
+  bool contains(const CeilingCell& cell) const {
+    return cell.i >= first.i && cell.j >= first.j && cell.i <= last.i && cell.j <= last.j;
+  }
+  /// Of columns and rows; none where the last lies before the first.
+  std::int64_t count() const;
+};
+CeilingCells cells_in(const CeilingGrid& grid, const CeilingGrid::Extent& rectangle);
+
 /// Whether the grid goes on for ever without a gap, so that nothing tells its cells apart.
 bool is_endless(const CeilingGrid& grid);
 /// Whether the grid has a patch there.

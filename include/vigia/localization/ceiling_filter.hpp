@@ -61,7 +61,8 @@ enum class CeilingUpdate {
 /// the prediction, so that where the robot may have moved by half a pitch unseen several shifts of
 /// the same filter remain, weighted; the belief is then ambiguous until motion, or the edge or a
 /// gap of a grid that has one, tells them apart: a patch where a shift has none, or none where it
-/// has one.
+/// has one. Where it may be anywhere, each cell of a grid with an edge is such a hypothesis; of a
+/// grid without one nothing is settled any more, since cells alike are found for ever.
 /// Patches without a mark leave it open by half a turn as well, where the heading was hardly known:
 /// so does a hypothesis of the pose turned about a point half way between, which nothing on such a
 /// grid settles.
@@ -82,6 +83,9 @@ class CeilingFilter {
   /// Nothing is known but how fast the robot may be.
   void predict_unknown(Stamp to);
   CeilingUpdate update(const std::vector<PatchImage>& patches);
+
+  /// The cell that the mean is in is the true one, by definition.
+  void take_cell_as_given();
 
   const Belief& belief() const { return belief_; }
   /// What is known of the camera's constant errors by now, and its covariance.
@@ -154,6 +158,9 @@ class CeilingFilter {
   void weigh_shifts(const Linearised& all, const std::vector<Seen>& seen, const Pose2& at);
   void judge_presence(const std::vector<Seen>& seen, const Pose2& at);
   void normalise_shifts();
+  void spread();
+  void shift_by_chance(const Linearised& all, const Pose2& at, int reach);
+  std::vector<std::pair<CeilingCell, double>> likeliest_shifts() const;
   void fuse(const Linearised& all, const std::vector<Seen>& seen);
   void doubt();
   void shift_by(CeilingCell shift);
@@ -178,7 +185,9 @@ class CeilingFilter {
   Eigen::MatrixXd P_;
   std::map<CeilingCell, Eigen::Index> patches_;  ///< where a cell's three states begin
   Shifts shifts_;
-  std::set<CeilingCell> judged_;  ///< cells in view whose presence or absence was weighed
+  bool spread_ = false;           ///< over all cells of the hall, and not yet sure of one
+  bool elsewhere_ = false;        ///< in a cell, perhaps, that no shift stands for
+  std::set<CeilingCell> judged_;  ///< cells whose presence or absence was weighed
   bool cells_unsure_ = false;  ///< whether the patches before were perhaps the same in other cells
   /// Of the patch that alone ended a wide prediction, until another agrees.
   std::optional<CeilingCell> lone_;
