@@ -20,8 +20,8 @@ constexpr double kPatchAgrees_m = 0.06;  // two patches of one grid, whatever th
 constexpr double kDirected = 5.0;        // log-odds
 constexpr int kFarthestShift = 6;        // cells that are weighed each way, at most
 constexpr double kNegligible = 1e-6;
-constexpr std::int64_t kMostCells = 20000;    // that are hypotheses, where it may be anywhere
-constexpr std::size_t kMostHypotheses = 200;  // that are told, the likeliest
+constexpr std::int64_t kMostCells = 20000;     // that are hypotheses, where it may be anywhere
+constexpr std::size_t kMostHypotheses = 2000;  // that are told
 constexpr std::ptrdiff_t kMostLacking =
     3;                                  // of patches that a frame lacks for reasons of their own
 constexpr double kSpreadDoubt = 0.1;    // by how much less doubt is borne of one cell among all
@@ -803,17 +803,23 @@ void CeilingFilter::inform(const CeilingTruthState& truth, const std::vector<Pat
   place(truth);
 }
 
-std::vector<std::pair<CeilingCell, double>> CeilingFilter::likeliest_shifts() const {
-  std::vector<std::pair<CeilingCell, double>> shifts(shifts_.begin(), shifts_.end());
-  if (shifts.size() <= kMostHypotheses) return shifts;
-  const auto end = shifts.begin() + static_cast<std::ptrdiff_t>(kMostHypotheses);
-  std::nth_element(shifts.begin(), end, shifts.end(), [](const auto& a, const auto& b) {
-    return a.second != b.second ? a.second > b.second : a.first < b.first;
-  });
-  shifts.erase(end, shifts.end());
-  std::sort(shifts.begin(), shifts.end(),
-            [](const auto& a, const auto& b) { return a.first < b.first; });
-  return shifts;
+/// All, or of too many a systematic sample: one at every n-th part of the weight.
+std::vector<std::pair<CeilingCell, double>> CeilingFilter::told_shifts() const {
+  std::vector<std::pair<CeilingCell, double>> told(shifts_.begin(), shifts_.end());
+  if (told.size() <= kMostHypotheses) return told;
+  constexpr double kPart = 1.0 / static_cast<double>(kMostHypotheses);
+  double passed = 0.0;
+  double next = 0.5 * kPart;
+  for (auto& [shift, weight] : told) {
+    passed += weight;
+    const double parts = std::max(0.0, std::ceil((passed - next) / kPart));
+    next += parts * kPart;
+    weight = parts * kPart;
+  }
+  told.erase(
+      std::remove_if(told.begin(), told.end(), [](const auto& one) { return one.second <= 0.0; }),
+      told.end());
+  return told;
 }
 
 void CeilingFilter::refresh_belief() {
@@ -834,7 +840,7 @@ void CeilingFilter::refresh_belief() {
     spread_ = false;
     return;
   }
-  for (const auto& [shift, weight] : likeliest_shifts()) {
+  for (const auto& [shift, weight] : told_shifts()) {
     const Eigen::Vector2d p = belief_.pose.position() + cell_centre(grid_, shift);
     const double as_believed = weight * (1.0 - turned_);
     belief_.hypotheses.push_back(

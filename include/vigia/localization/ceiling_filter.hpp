@@ -160,7 +160,7 @@ class CeilingFilter {
   void normalise_shifts();
   void spread();
   void shift_by_chance(const Linearised& all, const Pose2& at, int reach);
-  std::vector<std::pair<CeilingCell, double>> likeliest_shifts() const;
+  std::vector<std::pair<CeilingCell, double>> told_shifts() const;
   void fuse(const Linearised& all, const std::vector<Seen>& seen);
   void doubt();
   void shift_by(CeilingCell shift);
