@@ -1,5 +1,6 @@
 #include "replay_recorder.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -42,6 +43,20 @@ bool sees_all_round(const Camera& camera) {
          std::holds_alternative<UnifiedOmni>(std::get<CameraModel>(camera.optics));
 }
 
+constexpr std::size_t kShownHypotheses = 50;
+
+/// Of many hypotheses the likeliest: a page shows no more.
+Belief shown(Belief belief) {
+  auto& all = belief.hypotheses;
+  if (all.size() <= kShownHypotheses) return belief;
+  const auto end = all.begin() + kShownHypotheses;
+  std::partial_sort(
+      all.begin(), end, all.end(),
+      [](const PoseHypothesis& a, const PoseHypothesis& b) { return a.weight > b.weight; });
+  all.erase(end, all.end());
+  return belief;
+}
+
 }  // namespace
 
 void ReplayRecorder::on_start(const mission::MissionStart& start) {
@@ -71,7 +86,7 @@ void ReplayRecorder::on_tick(const mission::Tick& tick) {
   const bool watches = tick.attention && tick.attention->order;
   run_.target.push_back(watches ? std::optional(tick.attention->order->landmark) : std::nullopt);
   for (std::size_t i = 0; i < run_.localizers.size(); ++i) {
-    run_.localizers[i].beliefs.push_back(*tick.estimator.localizers[i].belief);
+    run_.localizers[i].beliefs.push_back(shown(*tick.estimator.localizers[i].belief));
     run_.localizers[i].bound_m.push_back(std::sqrt(scorer_.bound_position_m2(i)));
   }
   note_cameras(tick);

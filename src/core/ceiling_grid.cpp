@@ -20,9 +20,18 @@ void describe_gap(ParamVisitor& v, CeilingGrid& grid) {
   CeilingGrid::Extent gap;
   describe_rectangle(v, gap, "corner of the gap with the lesser x and y", "the opposite one",
                      "the gap ends before it begins");
-  v.require(v.reader() == nullptr || cells_in(grid, gap).count() > 0, "max_m",
+  if (v.reader() == nullptr) return;
+  v.require(cells_in(grid, gap).count() > 0, "max_m",
             "no patch's place lies in this gap: they are at the multiples of pitch_m");
-  if (v.reader() != nullptr) grid.gaps.push_back(gap);
+  if (grid.extent) {
+    const CeilingGrid::Extent common{gap.min.cwiseMax(grid.extent->min),
+                                     gap.max.cwiseMin(grid.extent->max)};
+    v.require(cells_in(grid, common).count() > 0, "max_m",
+              "the gap lies outside of the grid, which ends at min_m and max_m of the ceiling");
+    v.require(cells_in(grid, common).count() < cells_in(grid, *grid.extent).count(), "max_m",
+              "the gap leaves no patch of the grid");
+  }
+  grid.gaps.push_back(gap);
 }
 
 }  // namespace
@@ -40,11 +49,15 @@ void describe(ParamVisitor& v, CeilingGrid& grid) {
       "whether a patch's forward end is marked; without, it looks the same after half a turn");
   v.number("placement_m", grid.placement_m, {0.0, 0.1}, "σ of a patch's true place, in x and in y");
   v.angle("placement_deg", grid.placement_turn, {0.0, 20.0}, "σ of a patch's true direction");
-  v.given("min_m", [&] {
+  const bool ends = v.given("min_m", [&] {
     grid.extent = CeilingGrid::Extent{};
     describe_rectangle(v, *grid.extent, "where patches begin", "where they end",
                        "the grid ends before it begins");
+    v.require(v.reader() == nullptr || cells_in(grid, *grid.extent).count() > 0, "max_m",
+              "no patch hangs in this grid: they are at the multiples of pitch_m");
   });
+  v.require(ends || v.reader() == nullptr || !v.reader()->has("max_m"), "max_m",
+            "the grid ends and does not begin: min_m is missing beside it");
   v.each("gaps", "rectangles in which no patch hangs", [&] { describe_gap(v, grid); });
 }
 

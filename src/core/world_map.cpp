@@ -127,6 +127,11 @@ void describe(ParamVisitor& v, WorldMap& world) {
     CeilingGrid& grid = world.ceiling.emplace();
     v.map("ceiling", grid, "patches of one colour on a grid through the world's origin");
     grid.height_m = room.height_m;
+    if (v.reader() == nullptr || !grid.extent) return;
+    const Eigen::Array2d begin = world.plan.min_corner();
+    const Eigen::Array2d end = world.plan.max_corner();
+    v.require((grid.extent->min.array() <= end).all() && (grid.extent->max.array() >= begin).all(),
+              "ceiling", "the grid lies outside of the room: see its min_m and max_m");
   });
 }
 

@@ -20,8 +20,8 @@ constexpr double kPatchAgrees_m = 0.06;  // two patches of one grid, whatever th
 constexpr double kDirected = 5.0;        // log-odds
 constexpr int kFarthestShift = 6;        // cells that are weighed each way, at most
 constexpr double kNegligible = 1e-6;
-constexpr std::int64_t kMostCells = 20000;    // that are hypotheses, where it may be anywhere
-constexpr std::size_t kMostHypotheses = 200;  // that are told, the likeliest
+constexpr std::int64_t kMostCells = 20000;     // that are hypotheses, where it may be anywhere
+constexpr std::size_t kMostHypotheses = 2000;  // that are told
 constexpr std::ptrdiff_t kMostLacking =
     3;                                  // of patches that a frame lacks for reasons of their own
 constexpr double kSpreadDoubt = 0.1;    // by how much less doubt is borne of one cell among all
@@ -37,6 +37,7 @@ constexpr double kLoneDoubt = 0.1;  // that a lone patch which fits a wide predi
 constexpr double kFlowSlack_m = 0.01;
 constexpr double kTurnPerMetre = 2.0;  // rad, of a robot half a metre wide, at most
 constexpr double kAtRest = 1e-7;
+constexpr double kPlacementLearnt_m = 1e-3;    // σ of the places below which they are the grid's
 constexpr double kTogether = 0.9999;           // of χ² of patches that agree with each other
 constexpr int kHeadingWraps = 3;               // turns each way
 constexpr double kSlightTurn = from_deg(3.0);  // σ of a fix's heading beside the prediction's
@@ -70,6 +71,8 @@ void CeilingFilter::reset(Stamp stamp, const Prior& prior, const CeilingCameraEr
   P_(3, 3) = P_(4, 4) = params_.tilt_sigma * params_.tilt_sigma;
   P_(5, 5) = params_.height_sigma * params_.height_sigma;
   patches_.clear();
+  anchored_.clear();
+  motion_P_.setZero();
   shifts_ = {{CeilingCell{}, 1.0}};
   judged_.clear();
   elsewhere_ = false;
@@ -104,6 +107,8 @@ void CeilingFilter::move(const Motion& motion) {
   P_.leftCols<3>().bottomRows(P_.rows() - 3) = rows.rightCols(P_.cols() - 3).transpose();
   const Eigen::Matrix3d pose = rows.leftCols<kCommon>() * motion.F.transpose();
   P_.topLeftCorner<3, 3>() = 0.5 * (pose + pose.transpose()) + motion.Q;
+  const Eigen::Matrix3d F = motion.F.leftCols<3>();
+  motion_P_ = F * motion_P_ * F.transpose() + motion.Q;
   refresh_belief();
 }
 
@@ -356,9 +361,13 @@ void CeilingFilter::hold(const std::vector<Seen>& seen, const Pose2& at, bool af
   cells_unsure_ = afresh && !patches_.empty();
   if (afresh) {
     judged_.clear();
+    anchored_.clear();
   } else {
     for (const auto& [cell, place] : patches_) {
-      if (!in_sight(cell, at, -kForgotten_px)) continue;
+      if (!in_sight(cell, at, -kForgotten_px)) {
+        anchored_.erase(cell);
+        continue;
+      }
       places[cell] = static_cast<Eigen::Index>(kept.size());
       for (Eigen::Index i = 0; i < 3; ++i) kept.push_back(place + i);
     }
@@ -388,10 +397,10 @@ void CeilingFilter::hold(const std::vector<Seen>& seen, const Pose2& at, bool af
 }
 
 /// The mean with another pose.
-Eigen::VectorXd CeilingFilter::state_at(const Pose2& pose) const {
+CeilingFilter::Rest CeilingFilter::state_at(const Pose2& pose) const {
   Eigen::VectorXd at = x_;
   at.head<3>() = pose.vector();
-  return at;
+  return {at, at};
 }
 
 /// H M: a patch's three rows of H have the common states and its own placement alone, so that the
@@ -409,38 +418,59 @@ Eigen::MatrixXd CeilingFilter::by_rows(const std::vector<Seen>& seen, const Eige
   return product;
 }
 
+const Eigen::VectorXd& CeilingFilter::point_of(const Seen& one, const Rest& rest) const {
+  return anchored_.count(one.cell) > 0 ? rest.moved : rest.at;
+}
+
+/// What a patch lacks of its place in the robot's frame, and the derivatives of that place.
+struct CeilingFilter::PatchRows {
+  Eigen::Vector3d y = Eigen::Vector3d::Zero();
+  Eigen::Matrix<double, 3, kCommon> common = Eigen::Matrix<double, 3, kCommon>::Zero();
+  Eigen::Matrix3d own = Eigen::Matrix3d::Identity();  ///< a rotation
+};
+
+CeilingFilter::PatchRows CeilingFilter::rows_of(const CeilingCell& cell,
+                                                const PatchOnCeiling& patch, bool directed,
+                                                const Eigen::VectorXd& at) const {
+  const double theta = at[2];
+  const Eigen::Matrix2d R = world_to_robot(theta);
+  const Eigen::Index place = patches_.at(cell);
+  const Eigen::Vector2d out = cell_centre(grid_, cell) + at.segment<2>(place) - at.head<2>();
+  const Eigen::Vector2d expected = R * out;
+  PatchRows rows;
+  rows.y.head<2>() = patch.q - expected;
+  rows.y[2] = direction_difference(patch.psi, at[place + 2] - theta, directed);
+  rows.common.topLeftCorner<2, 2>() = -R;
+  rows.common.block<2, 1>(0, 2) = Eigen::Vector2d(expected.y(), -expected.x());
+  rows.common(2, 2) = -1.0;
+  rows.common.rightCols<3>() = -patch.derrors;
+  rows.own.topLeftCorner<2, 2>() = R;
+  return rows;
+}
+
 CeilingFilter::Linearised CeilingFilter::linearise(const std::vector<Seen>& seen,
-                                                   const Eigen::VectorXd& at) const {
+                                                   const Rest& rest) const {
   const auto rows = 3 * static_cast<Eigen::Index>(seen.size());
   Linearised all{Eigen::VectorXd::Zero(rows),
                  Eigen::MatrixXd::Zero(rows, x_.size()),
                  Eigen::MatrixXd::Zero(rows, rows),
                  {},
                  {}};
-  const auto errors = CeilingCameraErrors::from_vector(at.segment<3>(3));
-  const double theta = at[2];
-  const Eigen::Matrix2d R = world_to_robot(theta);
   Eigen::Index row = 0;
   for (const Seen& one : seen) {
+    const Eigen::VectorXd& at = point_of(one, rest);
+    const auto errors = CeilingCameraErrors::from_vector(at.segment<3>(3));
     const PatchOnCeiling patch = on_ceiling(camera_, one.image, errors).value_or(one.patch);
-    const Eigen::Index place = patches_.at(one.cell);
-    const Eigen::Vector2d out = cell_centre(grid_, one.cell) + at.segment<2>(place) - at.head<2>();
-    const Eigen::Vector2d expected = R * out;
-    all.y.segment<2>(row) = patch.q - expected;
-    all.y[row + 2] = direction_difference(patch.psi, at[place + 2] - theta, one.directed);
-    all.H.block<2, 2>(row, 0) = -R;
-    all.H.block<2, 1>(row, 2) = Eigen::Vector2d(expected.y(), -expected.x());
-    all.H(row + 2, 2) = -1.0;
-    all.H.block<3, 3>(row, 3) = -patch.derrors;
-    all.H.block<2, 2>(row, place) = R;
-    all.H(row + 2, place + 2) = 1.0;
+    const PatchRows rows_at = rows_of(one.cell, patch, one.directed, at);
+    all.H.block<3, kCommon>(row, 0) = rows_at.common;
+    all.H.block<3, 3>(row, patches_.at(one.cell)) = rows_at.own;
     all.R.block<3, 3>(row, row) = patch.covariance;
+    // Linearised at another state than the mean.
+    Eigen::VectorXd off = at - x_;
+    off[2] = wrap_angle(off[2]);
+    all.y.segment<3>(row) = rows_at.y + all.H.middleRows<3>(row) * off;
     row += 3;
   }
-  // Linearised at another state than the mean.
-  Eigen::VectorXd off = at - x_;
-  off[2] = wrap_angle(off[2]);
-  all.y += all.H * off;
   all.HP = by_rows(seen, all.H, P_);
   all.S = by_rows(seen, all.H, all.HP.transpose()).transpose() + all.R;
   return all;
@@ -471,7 +501,9 @@ std::vector<CeilingFilter::Seen> CeilingFilter::passed_gate(const std::vector<Se
   for (const double variances : kUnseenMotions) {
     P_.topLeftCorner<3, 3>() = before + variances * lively_Q_;
     passed = gated(seen, linearise(seen, state_at(start)));
-    if (passed.size() >= 2) return passed;
+    if (passed.size() < 2) continue;
+    motion_P_ += variances * lively_Q_;
+    return passed;
   }
   P_.topLeftCorner<3, 3>() = before;
   return {};
@@ -593,6 +625,7 @@ void CeilingFilter::doubt() {
   P_.topRows<3>().setZero();
   P_.leftCols<3>().setZero();
   P_.diagonal().head<3>() << sigma * sigma, sigma * sigma, kPi * kPi / 3.0;
+  motion_P_ = P_.topLeftCorner<3, 3>();
   spread();
   gated_ = 0.0;
   contradicts_.reset();
@@ -626,6 +659,9 @@ void CeilingFilter::shift_by(CeilingCell shift) {
   std::set<CeilingCell> judged;
   for (const CeilingCell& cell : judged_) judged.insert({cell.i + shift.i, cell.j + shift.j});
   judged_ = std::move(judged);
+  std::set<CeilingCell> anchored;
+  for (const CeilingCell& cell : anchored_) anchored.insert({cell.i + shift.i, cell.j + shift.j});
+  anchored_ = std::move(anchored);
   if (lone_) lone_ = CeilingCell{lone_->i + shift.i, lone_->j + shift.j};
 }
 
@@ -637,38 +673,42 @@ Eigen::MatrixXd CeilingFilter::gain(const Linearised& all) const {
   return K;
 }
 
-Eigen::VectorXd CeilingFilter::fused_state(const Linearised& all) const {
-  Eigen::VectorXd step = all.HP.transpose() * all.S.ldlt().solve(all.y);
+CeilingFilter::Rest CeilingFilter::fused_state(const Linearised& all) const {
+  const Eigen::VectorXd weighed = all.S.ldlt().solve(all.y);
+  Eigen::VectorXd step = all.HP.transpose() * weighed;
   if (cells_unsure_) step.segment<3>(3).setZero();
-  Eigen::VectorXd x = x_ + step;
-  x[2] = wrap_angle(x[2]);
-  return x;
+  Rest rest{x_ + step, x_};
+  rest.moved.head<3>() += motion_P_ * (all.H.leftCols<3>().transpose() * weighed);
+  rest.at[2] = wrap_angle(rest.at[2]);
+  rest.moved[2] = wrap_angle(rest.moved[2]);
+  return rest;
 }
 
 /// Where the update ends: linearised there again until it comes to rest (Bell and Cathey 1993).
-Eigen::VectorXd CeilingFilter::converged(const std::vector<Seen>& seen, const Pose2& start) const {
-  Eigen::VectorXd at = state_at(start);
+CeilingFilter::Rest CeilingFilter::converged(const std::vector<Seen>& seen,
+                                             const Pose2& start) const {
+  Rest rest = state_at(start);
   for (int i = 0; i < kIterations; ++i) {
-    const Eigen::VectorXd next = fused_state(linearise(seen, at));
-    const double moved = (next - at).head<kCommon>().norm();
-    at = next;
+    const Rest next = fused_state(linearise(seen, rest));
+    const double moved = (next.at - rest.at).head<kCommon>().norm();
+    rest = next;
     if (moved < kAtRest) break;
   }
-  return at;
+  return rest;
 }
 
 /// Each patch by itself may agree with a wide prediction, and two of them not with each other: the
 /// place of one, as it was learnt or as it is seen, is not true. It is left out, and what was
 /// learnt of it forgotten.
-Eigen::VectorXd CeilingFilter::settle(std::vector<Seen>& passed, const Pose2& start) {
+CeilingFilter::Rest CeilingFilter::settle(std::vector<Seen>& passed, const Pose2& start) {
   for (;;) {
-    Eigen::VectorXd at = converged(passed, start);
-    if (passed.size() < 2) return at;
-    const Linearised all = linearise(passed, at);
+    Rest rest = converged(passed, start);
+    if (passed.size() < 2) return rest;
+    const Linearised all = linearise(passed, rest);
     const Eigen::LDLT<Eigen::MatrixXd> S(all.S);
     const Eigen::VectorXd weighed = S.solve(all.y);
     if (all.y.dot(weighed) <= chi_square_quantile(kTogether, static_cast<double>(all.y.size())))
-      return at;
+      return rest;
     const Eigen::MatrixXd inverse = S.solve(Eigen::MatrixXd::Identity(all.S.rows(), all.S.cols()));
     std::size_t worst = 0;
     double most = 0.0;
@@ -686,8 +726,50 @@ Eigen::VectorXd CeilingFilter::settle(std::vector<Seen>& passed, const Pose2& st
   }
 }
 
+/// What was learnt of a patch's place is bound to what was then believed of the camera's errors,
+/// of which the images tell little. Were it linearised in each frame where the mean has come to
+/// meanwhile, the difference of two linearisations would count as knowledge: a robot that stands
+/// still would learn its tilt. The update is therefore linear in what is seen, and here the places
+/// are expressed anew at the mean to which it has led, so that the image of each stays as it was,
+/// in mean and covariance (a robot-centred map; Castellanos, Martinez-Cantin, Tardós, Neira 2007).
+void CeilingFilter::express_anew(const Eigen::VectorXd& moved) {
+  if (anchored_.empty()) return;
+  const auto errors_then = CeilingCameraErrors::from_vector(moved.segment<3>(3));
+  const Eigen::VectorXd now = x_;
+  Eigen::VectorXd off = now - moved;
+  off[2] = wrap_angle(off[2]);
+  Eigen::MatrixXd T = Eigen::MatrixXd::Identity(x_.size(), x_.size());
+  for (const CeilingCell& cell : anchored_) {
+    const Eigen::Index place = patches_.at(cell);
+    // As it would be seen from where it was linearised.
+    PatchOnCeiling image;
+    const PatchRows none = rows_of(cell, image, true, moved);
+    image.q = -none.y.head<2>();
+    image.psi = wrap_angle(moved[place + 2] - moved[2]);
+    const auto then =
+        rows_of(cell, with_errors(camera_, image, errors_then, errors_then), true, moved);
+    const auto here =
+        rows_of(cell, with_errors(camera_, image, errors_then, camera_errors()), true, now);
+    const Eigen::Vector3d moved_on =
+        then.common * off.head<kCommon>() + then.own * off.segment<3>(place);
+    x_.segment<3>(place) += here.own.transpose() * (here.y + moved_on);
+    T.block<3, kCommon>(place, 0) = here.own.transpose() * (then.common - here.common);
+    T.block<3, 3>(place, place) = here.own.transpose() * then.own;
+  }
+  const Eigen::MatrixXd P = T * P_ * T.transpose();
+  P_ = 0.5 * (P + P.transpose());
+}
+
+/// From now on what was learnt of their places stays as it was seen. Where patches hang as the grid
+/// has them nothing is to be learnt, and each frame is linearised by itself.
+void CeilingFilter::anchor(const std::vector<Seen>& passed) {
+  if (grid_.placement_m < kPlacementLearnt_m) return;
+  for (const Seen& one : passed) anchored_.insert(one.cell);
+}
+
 /// A patch's place is as unknown as before it was seen.
 void CeilingFilter::forget(const CeilingCell& cell) {
+  anchored_.erase(cell);
   const Eigen::Index place = patches_.at(cell);
   x_.segment<3>(place).setZero();
   P_.middleRows<3>(place).setZero();
@@ -733,13 +815,16 @@ CeilingFilter::Fit CeilingFilter::fit(const std::vector<Seen>& seen) {
 /// with what the robot can have done meanwhile, are believed; not where that is half a pitch.
 CeilingFilter::Fit CeilingFilter::fit_against_flow(const std::vector<Seen>& seen) {
   const Eigen::Matrix3d before = P_.topLeftCorner<3, 3>();
+  const Eigen::Matrix3d motion_before = motion_P_;
   P_.topLeftCorner<3, 3>() += unknown_motion(0.0, flow_alone_s_);
+  motion_P_ += unknown_motion(0.0, flow_alone_s_);
   refresh_belief();
   if (!open()) {
     Fit fitted = fit(seen);
     if (fitted.passed.size() >= 2) return fitted;
   }
   P_.topLeftCorner<3, 3>() = before;
+  motion_P_ = motion_before;
   refresh_belief();
   return {};
 }
@@ -761,12 +846,15 @@ CeilingUpdate CeilingFilter::update(const std::vector<PatchImage>& patches) {
   gated_ = 0.0;
   contradicts_.reset();
   updated_ = stamp_;
-  const Eigen::VectorXd at = settle(passed, fitted.start.pose);
+  const Rest rest = settle(passed, fitted.start.pose);
   note_lone_patch(passed);
   note_turn(fitted.start);
-  const Linearised all = linearise(passed, at);
-  weigh_shifts(all, fitted.seen, Pose2::from_vector(at.head<3>()));
+  const Linearised all = linearise(passed, rest);
+  weigh_shifts(all, fitted.seen, Pose2::from_vector(rest.at.head<3>()));
   fuse(all, passed);
+  express_anew(rest.moved);
+  anchor(passed);
+  motion_P_.setZero();
   unknown_s_ = 0.0;
   flow_alone_s_ = 0.0;
   const auto best =
@@ -799,21 +887,27 @@ void CeilingFilter::inform(const CeilingTruthState& truth, const std::vector<Pat
   if (seen.empty()) return;
   hold(seen, truth.pose, false);
   place(truth);
-  fuse(linearise(seen, x_), seen);
+  fuse(linearise(seen, {x_, x_}), seen);
   place(truth);
 }
 
-std::vector<std::pair<CeilingCell, double>> CeilingFilter::likeliest_shifts() const {
-  std::vector<std::pair<CeilingCell, double>> shifts(shifts_.begin(), shifts_.end());
-  if (shifts.size() <= kMostHypotheses) return shifts;
-  const auto end = shifts.begin() + static_cast<std::ptrdiff_t>(kMostHypotheses);
-  std::nth_element(shifts.begin(), end, shifts.end(), [](const auto& a, const auto& b) {
-    return a.second != b.second ? a.second > b.second : a.first < b.first;
-  });
-  shifts.erase(end, shifts.end());
-  std::sort(shifts.begin(), shifts.end(),
-            [](const auto& a, const auto& b) { return a.first < b.first; });
-  return shifts;
+/// All, or of too many a systematic sample: one at every n-th part of the weight.
+std::vector<std::pair<CeilingCell, double>> CeilingFilter::told_shifts() const {
+  std::vector<std::pair<CeilingCell, double>> told(shifts_.begin(), shifts_.end());
+  if (told.size() <= kMostHypotheses) return told;
+  constexpr double kPart = 1.0 / static_cast<double>(kMostHypotheses);
+  double passed = 0.0;
+  double next = 0.5 * kPart;
+  for (auto& [shift, weight] : told) {
+    passed += weight;
+    const double parts = std::max(0.0, std::ceil((passed - next) / kPart));
+    next += parts * kPart;
+    weight = parts * kPart;
+  }
+  told.erase(
+      std::remove_if(told.begin(), told.end(), [](const auto& one) { return one.second <= 0.0; }),
+      told.end());
+  return told;
 }
 
 void CeilingFilter::refresh_belief() {
@@ -834,7 +928,7 @@ void CeilingFilter::refresh_belief() {
     spread_ = false;
     return;
   }
-  for (const auto& [shift, weight] : likeliest_shifts()) {
+  for (const auto& [shift, weight] : told_shifts()) {
     const Eigen::Vector2d p = belief_.pose.position() + cell_centre(grid_, shift);
     const double as_believed = weight * (1.0 - turned_);
     belief_.hypotheses.push_back(

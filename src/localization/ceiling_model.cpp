@@ -71,6 +71,28 @@ std::optional<PatchOnCeiling> on_ceiling(const CeilingCamera& camera, const Patc
   return seen;
 }
 
+PatchOnCeiling with_errors(const CeilingCamera& camera, const PatchOnCeiling& patch,
+                           const CeilingCameraErrors& from, const CeilingCameraErrors& to) {
+  const Eigen::Vector2d c = camera.rMc.translation().head<2>();
+  const Eigen::Vector2d then = (patch.q - c) / (camera.rise_m() * std::exp(from.log_height));
+  const Eigen::Matrix3d turn = tilt_rotation(to) * tilt_rotation(from).transpose();
+  const Eigen::Vector3d r = turn * Eigen::Vector3d(then.x(), then.y(), 1.0);
+  const double rise = camera.rise_m() * std::exp(to.log_height);
+  const Eigen::Vector2d m = r.head<2>() / r.z();
+  Eigen::Matrix<double, 2, 3> dm_dr;
+  dm_dr << 1.0, 0.0, -m.x(), 0.0, 1.0, -m.y();
+  const Eigen::Vector3d along =
+      turn * Eigen::Vector3d(std::cos(patch.psi), std::sin(patch.psi), 0.0);
+  const Eigen::Vector2d d = (dm_dr * along / r.z()).normalized();
+  PatchOnCeiling now;
+  now.q = c + rise * m;
+  now.psi = std::atan2(d.y(), d.x());
+  now.derrors.topLeftCorner<2, 2>() = rise * tilt_jacobian(m);
+  now.derrors.topRightCorner<2, 1>() = rise * m;
+  now.derrors.bottomLeftCorner<1, 2>() = direction_jacobian(m, d);
+  return now;
+}
+
 Pose2 robot_motion(const CeilingCamera& camera, const ImageShift& shift) {
   // The camera's own motion, then the robot's about it.
   const Eigen::Vector2d c = camera.rMc.translation().head<2>();

@@ -34,6 +34,10 @@ std::string_view to_string(EventKind kind) {
       return "exploration";
     case EventKind::recovered:
       return "recovered";
+    case EventKind::ambiguous:
+      return "ambiguous";
+    case EventKind::settled:
+      return "settled";
     case EventKind::wait:
       return "wait";
     case EventKind::evade:

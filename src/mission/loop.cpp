@@ -253,7 +253,7 @@ Commands Loop::proceed(const Readings& readings) {
   const Demand demand = attention_->plan(readings, belief(), navigator_.station(), look_ + 1);
   tick_.timing.plan += stopwatch.elapsed_ms();
   if (demand.contradicted || ring_contradicts()) primary().lose();
-  if (belief().status == BeliefStatus::lost) return begin_recovery(readings);
+  if (recovery_->asked(belief())) return begin_recovery(readings);
   if (demand.new_look) begin_look();
   const BaseRates base = drive(readings, demand.stop);
   return {base, steer(readings, base)};
@@ -289,10 +289,16 @@ HeadRates Loop::steer(const Readings& readings, const BaseRates& base) {
 }
 
 Commands Loop::begin_recovery(const Readings& readings) {
-  log_.record(EventKind::lost, {{"sigma_m", belief().position_sigma()}},
-              {{"localizer", setup_.primary},
-               {"reason", ring_contradicts() ? "the range ring sees through the map's walls"
-                                             : "landmarks are not where they should be"}});
+  lost_ = belief().status == BeliefStatus::lost;
+  if (lost_)
+    log_.record(EventKind::lost, {{"sigma_m", belief().position_sigma()}},
+                {{"localizer", setup_.primary},
+                 {"reason", ring_contradicts() ? "the range ring sees through the map's walls"
+                                               : "landmarks are not where they should be"}});
+  else
+    log_.record(EventKind::ambiguous,
+                {{"hypotheses", static_cast<double>(belief().hypotheses.size())}},
+                {{"localizer", setup_.primary}});
   attention_->cancel();
   recovering_ = true;
   const RecoveryStep step = recovery_->begin(readings);
@@ -317,11 +323,12 @@ void Loop::recovered(const std::optional<Prior>& pose) {
   recovering_ = false;
   ring_doubt_.trust(simulator_.scan(), belief());
   const Pose2& here = belief().pose;
-  log_.record(EventKind::recovered, {{"x_m", here.x},
-                                     {"y_m", here.y},
-                                     {"theta_rad", here.theta},
-                                     {"sigma_m", belief().position_sigma()}});
-  if (navigator_.replan(here, "recovered")) {
+  log_.record(lost_ ? EventKind::recovered : EventKind::settled,
+              {{"x_m", here.x},
+               {"y_m", here.y},
+               {"theta_rad", here.theta},
+               {"sigma_m", belief().position_sigma()}});
+  if (navigator_.replan(here, lost_ ? "recovered" : "settled")) {
     attention_->follow(navigator_.path());
     return;
   }

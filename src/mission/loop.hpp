@@ -71,6 +71,7 @@ class Loop {
   double travelled_m_ = 0.0;
   LookId look_ = 0;
   bool recovering_ = false;
+  bool lost_ = false;  ///< recovering, because of a belief that was lost
   bool gave_up_ = false;
   bool stays_lost_ = false;  ///< the recovery has given up
   Tick tick_;                ///< what this tick tells its listeners

@@ -67,6 +67,11 @@ void describe(ParamVisitor& v, RecoveryParams& p) {
   v.number("ring_probability", p.ring_probability, {0.5, 1.0},
            "of being elsewhere, by beams of the range ring that see through walls of the map, at "
            "which the belief is lost; 1: never");
+  v.number("contact_risk", p.contact_risk, {0.0, 0.5},
+           "of a robot without a head that may be at several places: the weight of those from "
+           "which it would drive into the building; above, it leaves its path until it knows");
+  v.number("wander_s", p.wander_s, {1.0, 100000.0},
+           "without knowing where it is, after which such a robot's outcome is `lost`");
 }
 
 }  // namespace vigia::mission

@@ -28,31 +28,21 @@ struct RecoveryStep {
 /// What a lost robot has in a tick.
 struct RecoveryInput {
   const Readings& readings;
-  const Belief& belief;  ///< of the primary localizer: lost, and carried on by odometry
+  const Belief& belief;  ///< of the primary localizer, carried on by odometry
   const std::vector<Delivery>& deliveries;
   const std::function<RangeScan()>& scan;  ///< asks the ring; without one, no readings
 };
 
-/// What a robot does whose primary localizer is lost.
+/// What a robot does whose primary localizer is lost, or knows too little to be driven by.
 class Recovery {
  public:
   virtual ~Recovery() = default;
-  /// The first step, in the tick in which the belief is found to be lost.
+  /// Whether a robot with such a belief should do it, and not follow its path.
+  virtual bool asked(const Belief& belief) const { return belief.status == BeliefStatus::lost; }
+  /// The first step, in the tick in which the belief asks for it.
   virtual RecoveryStep begin(const Readings& readings) = 0;
   /// In each of the ticks after it, until it has found the robot or given up.
   virtual RecoveryStep step(const RecoveryInput& input) = 0;
-};
-
-/// Of a robot that has no head to look around with: it stands still, and its localizers are offered
-/// what its eyes observe until the primary one tracks again.
-class WaitRecovery : public Recovery {
- public:
-  RecoveryStep begin(const Readings& /*readings*/) override { return {}; }
-  RecoveryStep step(const RecoveryInput& input) override {
-    RecoveryStep step;
-    if (input.belief.status == BeliefStatus::tracking) step.status = RecoveryStatus::found;
-    return step;
-  }
 };
 
 }  // namespace vigia::mission

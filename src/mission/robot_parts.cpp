@@ -2,6 +2,7 @@
 
 #include "ptz_attention.hpp"
 #include "sweep_recovery.hpp"
+#include "wander_recovery.hpp"
 
 #include <algorithm>
 
@@ -51,7 +52,7 @@ std::unique_ptr<Attention> make_attention(const MissionSetup& setup, const Rig& 
 std::unique_ptr<Recovery> make_recovery(const MissionSetup& setup, const Rig& rig,
                                         const std::vector<CameraFeed>& feeds, EventLog& log) {
   const Camera* directed = directed_camera(rig);
-  if (directed == nullptr) return std::make_unique<WaitRecovery>();
+  if (directed == nullptr) return std::make_unique<WanderRecovery>(setup, log);
   const auto index = static_cast<std::size_t>(directed - rig.cameras.data());
   return std::make_unique<SweepRecovery>(setup, feeds[index].eye(), log);
 }

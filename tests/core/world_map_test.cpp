@@ -182,7 +182,22 @@ INSTANTIATE_TEST_SUITE_P(
                 "w.yaml:4:35: ceiling.gaps[0].max_m: no patch's place lies in this gap: they are "
                 "at the multiples of pitch_m"},
         Mistake{std::string(kHall) + "  gaps: [{min_m: [1, 1]}]\n",
-                "w.yaml:4:10: ceiling.gaps[0].max_m: the key is missing"}));
+                "w.yaml:4:10: ceiling.gaps[0].max_m: the key is missing"},
+        Mistake{std::string(kHall) + "  max_m: [9, 9]\n",
+                "w.yaml:4:10: ceiling.max_m: the grid ends and does not begin: min_m is missing "
+                "beside it"},
+        Mistake{std::string(kHall) + "  min_m: [0.2, 0.2]\n  max_m: [0.8, 0.8]\n",
+                "w.yaml:5:10: ceiling.max_m: no patch hangs in this grid: they are at the "
+                "multiples of pitch_m"},
+        Mistake{std::string(kHall) + "  min_m: [300, 300]\n  max_m: [400, 400]\n",
+                "w.yaml:3:1: ceiling: the grid lies outside of the room: see its min_m and max_m"},
+        Mistake{std::string(kHall) + "  min_m: [1, 1]\n  max_m: [9, 9]\n"
+                                     "  gaps: [{min_m: [12, 12], max_m: [13, 13]}]\n",
+                "w.yaml:6:35: ceiling.gaps[0].max_m: the gap lies outside of the grid, which ends "
+                "at min_m and max_m of the ceiling"},
+        Mistake{std::string(kHall) + "  min_m: [1, 1]\n  max_m: [9, 9]\n"
+                                     "  gaps: [{min_m: [0, 0], max_m: [20, 20]}]\n",
+                "w.yaml:6:33: ceiling.gaps[0].max_m: the gap leaves no patch of the grid"}));
 
 INSTANTIATE_TEST_SUITE_P(
     OfTheRoom, WorldMistake,

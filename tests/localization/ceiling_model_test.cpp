@@ -1,12 +1,14 @@
 #include "vigia/localization/ceiling_model.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "vigia/core/angle.hpp"
+#include "vigia/core/random.hpp"
 #include "vigia/localization/ceiling_filter.hpp"
 #include "vigia/localization/ceiling_published.hpp"
 
@@ -84,6 +86,18 @@ TEST(CeilingModel, DerivativesByTheCamerasErrorsAreThoseOfFiniteDifferences) {
   }
 }
 
+TEST(CeilingModel, AnImageTellsThePlaceUnderOtherErrorsAsWell) {
+  const CeilingCameraErrors from{0.02, -0.01, 0.03};
+  const CeilingCameraErrors to{-0.015, 0.03, -0.02};
+  const PatchImage image = image_of(up_camera(), from, {0.3, 0.4, 1.2}, {0.0, 1.0, 0.4});
+  const PatchOnCeiling then = *on_ceiling(up_camera(), image, from);
+  const PatchOnCeiling expected = *on_ceiling(up_camera(), image, to);
+  const PatchOnCeiling now = with_errors(up_camera(), then, from, to);
+  EXPECT_LT((now.q - expected.q).norm(), 1e-12);
+  EXPECT_NEAR(wrap_angle(now.psi - expected.psi), 0.0, 1e-12);
+  EXPECT_LT((now.derrors - expected.derrors).norm(), 1e-12);
+}
+
 TEST(CeilingModel, CovarianceIsThatOfThePixelsPropagated) {
   const PatchImage image = image_of(up_camera(), {}, {0.3, 0.4, 1.2}, {0.0, 1.0, 0.0});
   const PatchOnCeiling seen = *on_ceiling(up_camera(), image);
@@ -141,6 +155,89 @@ TEST(CeilingFilter, FindsTiltAndHeightFromThePatchesThatItSees) {
   EXPECT_NEAR(filter.camera_errors().tilt_y, errors.tilt_y, 2e-4);
   EXPECT_NEAR(filter.camera_errors().log_height, errors.log_height, 2e-4);
   EXPECT_EQ(filter.belief().status, BeliefStatus::tracking);
+}
+
+/// Of a filter that is told what is drawn: 1° of tilt, 2 % of height, 5 mm and 1.3° a patch.
+struct Consistency {
+  double nees = 0.0;  ///< per degree of freedom, after eight frames, mean over the drives
+  double worst = 0.0;
+  double sigma_ratio = 0.0;  ///< of the position's σ, after the last frame and the first
+};
+
+Consistency consistency(double speed_mps, double turn_radps, int drives) {
+  CeilingGrid grid;
+  grid.placement_m = 0.005;
+  grid.placement_turn = from_deg(1.3);
+  CeilingFilterParams params;
+  params.tilt_sigma = from_deg(1.0);
+  params.height_sigma = 0.02;
+  Consistency result;
+  for (int drive = 0; drive < drives; ++drive) {
+    RandomStream random(static_cast<std::uint64_t>(drive), "consistency");
+    const CeilingCameraErrors errors{params.tilt_sigma * random.normal(),
+                                     params.tilt_sigma * random.normal(),
+                                     params.height_sigma * random.normal()};
+    std::map<CeilingCell, Pose2> patches;
+    for (std::int64_t i = -4; i <= 4; ++i)
+      for (std::int64_t j = -4; j <= 4; ++j) {
+        const double dx = grid.placement_m * random.normal();
+        const double dy = grid.placement_m * random.normal();
+        patches[{i, j}] = {static_cast<double>(i) + dx, static_cast<double>(j) + dy,
+                           grid.placement_turn * random.normal()};
+      }
+    Pose2 robot{random.uniform(-0.5, 0.5), random.uniform(-0.5, 0.5), random.uniform(-kPi, kPi)};
+    CeilingFilter filter(up_camera(), grid, params);
+    filter.reset({}, near(compose(robot, {0.05 * random.normal(), 0.05 * random.normal(),
+                                          from_deg(2.0) * random.normal()}),
+                          0.05, from_deg(2.0)));
+    double first = 0.0;
+    constexpr double kFrame_s = 0.125;
+    for (int frame = 0; frame < 8; ++frame) {
+      OdometryIncrement u;
+      u.from = filter.belief().stamp;
+      u.to = u.from + Duration::from_seconds(kFrame_s);
+      u.trans = speed_mps * kFrame_s;
+      u.rot2 = turn_radps * kFrame_s;
+      if (frame > 0) {
+        filter.predict(u);
+        robot = move(robot, u);
+      }
+      std::vector<PatchImage> images;
+      for (const auto& [cell, patch] : patches) {
+        PatchImage image = image_of(up_camera(), errors, robot, patch);
+        if (!in_image(up_camera().model, image.uv)) continue;
+        image.uv += Eigen::Vector2d(0.01 * random.normal(), 0.01 * random.normal());
+        image.angle += 1e-3 * random.normal();
+        images.push_back(image);
+      }
+      filter.update(images);
+      if (frame == 0) first = filter.belief().position_sigma();
+    }
+    const Eigen::Vector3d error = difference(filter.belief().pose, robot);
+    const double nees = error.dot(filter.belief().covariance.ldlt().solve(error)) / 3.0;
+    result.nees += nees / drives;
+    result.worst = std::max(result.worst, nees);
+    result.sigma_ratio += filter.belief().position_sigma() / first / drives;
+  }
+  return result;
+}
+
+TEST(CeilingFilter, ARobotThatStandsStillLearnsNothingFromMorePictures) {
+  const Consistency stands = consistency(0.0, 0.0, 60);
+  EXPECT_GT(stands.nees, 0.7);
+  EXPECT_LT(stands.nees, 1.4);
+  EXPECT_LT(stands.worst, 6.0);
+  EXPECT_GT(stands.sigma_ratio, 0.95);
+}
+
+TEST(CeilingFilter, ARobotThatMovesSlowlyIsAsSureAsItMayBe) {
+  for (const double turn_radps : {0.0, 0.2}) {
+    const Consistency moves = consistency(0.1, turn_radps, 60);
+    EXPECT_GT(moves.nees, 0.7) << turn_radps;
+    EXPECT_LT(moves.nees, 1.5) << turn_radps;
+    EXPECT_LT(moves.worst, 6.0) << turn_radps;
+    EXPECT_LT(moves.sigma_ratio, 0.5) << turn_radps;
+  }
 }
 
 TEST(CeilingFilter, AThousandFramesLeaveItsCovarianceSymmetric) {

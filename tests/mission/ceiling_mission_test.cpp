@@ -1,3 +1,4 @@
+#include <map>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -24,6 +25,41 @@ TEST(CeilingMission, TheRobotKnowsItsPlaceByThePatchesOfTheCeiling) {
   EXPECT_DOUBLE_EQ(ceiling.lost_s, 0.0);
   EXPECT_GT(ceiling.pcrlb_position_rms_m, 0.0005);
   EXPECT_LT(ceiling.pcrlb_position_rms_m, 0.01);
+}
+
+/// What a drive said, and how it ended.
+class Told : public Listener {
+ public:
+  void on_event(const Event& event) override { ++count[event.kind]; }
+  void on_tick(const Tick& tick) override {
+    const Belief& belief = tick.estimator.primary_belief();
+    off_m = (belief.pose.position() - tick.truth.pose.position()).norm();
+    sure = belief.status == BeliefStatus::tracking;
+    wrong += sure && off_m > 0.4 ? 1 : 0;
+  }
+  std::map<EventKind, int> count;
+  double off_m = 0.0;
+  bool sure = false;
+  int wrong = 0;  ///< ticks
+};
+
+TEST(CeilingMission, PutDownElsewhereInAHallTheRobotWandersUntilItKnowsAndTouchesNoWall) {
+  const MissionSetup setup = load_mission(
+      kHall,
+      {"world.room={width_m: 14, depth_m: 14, height_m: 2.7}",
+       "world.ceiling={placement_m: 0.005, placement_deg: 1.3, min_m: [1, 1], max_m: [13, 13]}",
+       "start={position_m: [3, 3], heading_deg: 0, sigma_m: 0.05, sigma_deg: 2}",
+       "route={via_m: [[11, 3], [11, 11]], goal_m: [3, 11]}", "timeout_s=150",
+       "disturbances={kidnapping: {earliest_s: 3, latest_s: 5, min_m: 3}}"});
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    Told told;
+    const Outcome outcome = run_mission(setup, seed, {&told});
+    EXPECT_EQ(outcome, Outcome::arrived) << seed;
+    EXPECT_EQ(told.count[EventKind::kidnapped], 1) << seed;
+    EXPECT_GE(told.count[EventKind::settled], 1) << seed;
+    EXPECT_LT(told.off_m, 0.02) << seed;
+    EXPECT_LE(told.wrong, 60) << seed;
+  }
 }
 
 TEST(CeilingMission, TheCeilingsFlowMovesAnyLocalizerThatTheMissionNames) {

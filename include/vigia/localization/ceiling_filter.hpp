@@ -113,6 +113,12 @@ class CeilingFilter {
     Eigen::MatrixXd HP;
     Eigen::MatrixXd S;
   };
+  /// Where an update ends, at which patches are linearised that are new; those whose places were
+  /// learnt are where the prediction was, moved by what was unknown of the motion since.
+  struct Rest {
+    Eigen::VectorXd at;
+    Eigen::VectorXd moved;
+  };
   using Shifts = std::map<CeilingCell, double>;  ///< by whole cells, weights
 
   Pose2 pose() const { return Pose2::from_vector(x_.head<3>()); }
@@ -143,24 +149,30 @@ class CeilingFilter {
   void note_turn(const Start& start);
   bool in_sight(const CeilingCell& cell, const Pose2& at, double margin_px) const;
   void hold(const std::vector<Seen>& seen, const Pose2& at, bool afresh);
-  Eigen::VectorXd state_at(const Pose2& pose) const;
+  Rest state_at(const Pose2& pose) const;
   Eigen::MatrixXd by_rows(const std::vector<Seen>& seen, const Eigen::MatrixXd& H,
                           const Eigen::MatrixXd& M) const;
-  Linearised linearise(const std::vector<Seen>& seen, const Eigen::VectorXd& at) const;
+  const Eigen::VectorXd& point_of(const Seen& one, const Rest& rest) const;
+  Linearised linearise(const std::vector<Seen>& seen, const Rest& rest) const;
   std::vector<Seen> gated(const std::vector<Seen>& seen, const Linearised& all) const;
   std::vector<Seen> passed_gate(const std::vector<Seen>& seen, const Pose2& start);
   void note_lone_patch(const std::vector<Seen>& passed);
   Eigen::MatrixXd gain(const Linearised& all) const;
-  Eigen::VectorXd fused_state(const Linearised& all) const;
-  Eigen::VectorXd converged(const std::vector<Seen>& seen, const Pose2& start) const;
-  Eigen::VectorXd settle(std::vector<Seen>& passed, const Pose2& start);
+  Rest fused_state(const Linearised& all) const;
+  Rest converged(const std::vector<Seen>& seen, const Pose2& start) const;
+  Rest settle(std::vector<Seen>& passed, const Pose2& start);
   void forget(const CeilingCell& cell);
+  struct PatchRows;
+  PatchRows rows_of(const CeilingCell& cell, const PatchOnCeiling& patch, bool directed,
+                    const Eigen::VectorXd& at) const;
+  void express_anew(const Eigen::VectorXd& moved);
+  void anchor(const std::vector<Seen>& passed);
   void weigh_shifts(const Linearised& all, const std::vector<Seen>& seen, const Pose2& at);
   void judge_presence(const std::vector<Seen>& seen, const Pose2& at);
   void normalise_shifts();
   void spread();
   void shift_by_chance(const Linearised& all, const Pose2& at, int reach);
-  std::vector<std::pair<CeilingCell, double>> likeliest_shifts() const;
+  std::vector<std::pair<CeilingCell, double>> told_shifts() const;
   void fuse(const Linearised& all, const std::vector<Seen>& seen);
   void doubt();
   void shift_by(CeilingCell shift);
@@ -183,7 +195,9 @@ class CeilingFilter {
   CeilingFilterParams params_;
   Eigen::VectorXd x_;  ///< x, y, θ, tilt, tilt, log height, then three a patch
   Eigen::MatrixXd P_;
-  std::map<CeilingCell, Eigen::Index> patches_;  ///< where a cell's three states begin
+  std::map<CeilingCell, Eigen::Index> patches_;         ///< where a cell's three states begin
+  std::set<CeilingCell> anchored_;                      ///< those whose patches' places were learnt
+  Eigen::Matrix3d motion_P_ = Eigen::Matrix3d::Zero();  ///< of the pose, by motion since an update
   Shifts shifts_;
   bool spread_ = false;           ///< over all cells of the hall, and not yet sure of one
   bool elsewhere_ = false;        ///< in a cell, perhaps, that no shift stands for

@@ -48,6 +48,11 @@ struct PatchOnCeiling {
 std::optional<PatchOnCeiling> on_ceiling(const CeilingCamera& camera, const PatchImage& patch,
                                          const CeilingCameraErrors& errors = {});
 
+/// As the image of a patch, which lies at @p patch for a camera with the errors @p from, tells its
+/// place for one with the errors @p to. Of @p patch its place and direction are used.
+PatchOnCeiling with_errors(const CeilingCamera& camera, const PatchOnCeiling& patch,
+                           const CeilingCameraErrors& from, const CeilingCameraErrors& to);
+
 /// The robot's motion by a camera's over the ceiling, which is levelled by the camera's rMc.
 Pose2 robot_motion(const CeilingCamera& camera, const ImageShift& shift);
 

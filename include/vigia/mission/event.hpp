@@ -26,6 +26,8 @@ enum class EventKind {
   looked_around,  ///< a lost robot has finished a sweep
   exploration,    ///< … and goes to another place to look around from
   recovered,      ///< a lost robot knows again where it is
+  ambiguous,      ///< it may be at several places, and would drive into the building from one
+  settled,        ///< … and knows again which
   wait,           ///< the pilot waits for something to go away
   evade,          ///< the pilot goes round something
   rejoined,       ///< … and is back on the path

@@ -53,6 +53,8 @@ struct RecoveryParams {
   double explained_share = 0.5;  ///< of the discs that a sweep shows, by the pose that is believed
   int sweeps = 6;                ///< given up (outcome lost) after so many without a result
   double ring_probability = 0.99;  ///< of being elsewhere, by the ring, at which belief is lost
+  double contact_risk = 0.01;  ///< of touching the building, borne while places are not told apart
+  double wander_s = 120.0;     ///< given up (outcome lost) by a robot without a head after so long
 };
 
 /// A mission, validated.
