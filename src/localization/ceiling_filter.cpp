@@ -738,7 +738,12 @@ void CeilingFilter::express_anew(const Eigen::VectorXd& moved) {
   const Eigen::VectorXd now = x_;
   Eigen::VectorXd off = now - moved;
   off[2] = wrap_angle(off[2]);
-  Eigen::MatrixXd T = Eigen::MatrixXd::Identity(x_.size(), x_.size());
+  struct Change {
+    Eigen::Index place;
+    Eigen::Matrix<double, 3, kCommon> common;
+    Eigen::Matrix3d own;
+  };
+  std::vector<Change> changes;
   for (const CeilingCell& cell : anchored_) {
     const Eigen::Index place = patches_.at(cell);
     // As it would be seen from where it was linearised.
@@ -753,11 +758,17 @@ void CeilingFilter::express_anew(const Eigen::VectorXd& moved) {
     const Eigen::Vector3d moved_on =
         then.common * off.head<kCommon>() + then.own * off.segment<3>(place);
     x_.segment<3>(place) += here.own.transpose() * (here.y + moved_on);
-    T.block<3, kCommon>(place, 0) = here.own.transpose() * (then.common - here.common);
-    T.block<3, 3>(place, place) = here.own.transpose() * then.own;
+    changes.push_back({place, here.own.transpose() * (then.common - here.common),
+                       here.own.transpose() * then.own});
   }
-  const Eigen::MatrixXd P = T * P_ * T.transpose();
-  P_ = 0.5 * (P + P.transpose());
+  // T P Tᵀ, where T has the common states and a patch's own alone.
+  for (const Change& change : changes)
+    P_.middleRows<3>(change.place) =
+        change.common * P_.topRows<kCommon>() + change.own * P_.middleRows<3>(change.place).eval();
+  for (const Change& change : changes)
+    P_.middleCols<3>(change.place) = P_.leftCols<kCommon>() * change.common.transpose() +
+                                     P_.middleCols<3>(change.place).eval() * change.own.transpose();
+  P_ = (0.5 * (P_ + P_.transpose())).eval();
 }
 
 /// From now on what was learnt of their places stays as it was seen. Where patches hang as the grid
