@@ -59,8 +59,11 @@ TEST(RampMission, ARampThatTheMapHasWrongIsTold) {
               1, {&events});
   ASSERT_FALSE(events.off.empty());
   for (const auto& [name, value] : events.off[0]) {
-    if (name == "piece") EXPECT_EQ(value, 2.0);
-    if (name == "steeper_deg") EXPECT_NEAR(value, 1.0, 0.5);
+    if (name == "piece") {
+      EXPECT_EQ(value, 2.0);
+    } else if (name == "steeper_deg") {
+      EXPECT_NEAR(value, 1.0, 0.5);
+    }
   }
 }
 
