@@ -235,7 +235,7 @@ Eigen::Matrix<double, 6, 3> Ground::dplace_dpose(const Pose2& pose) const {
 }
 
 Eigen::Vector3d Ground::lift(const Eigen::Vector2d& p, double height_m) const {
-  const Eigen::Vector3d in_plan(p.x(), p.y(), height_m);
+  Eigen::Vector3d in_plan(p.x(), p.y(), height_m);
   if (wMg_) return *wMg_ * in_plan;
   if (patches_.empty()) return in_plan;
   return on(patches_[patch_at(p)].wMg, p) + height_m * Eigen::Vector3d::UnitZ();
