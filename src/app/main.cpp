@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 #include <opencv2/core.hpp>
@@ -64,6 +65,9 @@ int run_program(int argc, char** argv) {
   } catch (const vigia::InputError& error) {
     spdlog::error("{}", error.what());
     return kWrongInput;
+  } catch (const std::system_error& error) {
+    spdlog::error("{}", error.what());  // as of an output that takes no more
+    return kNotWritten;
   } catch (const std::exception& error) {
     spdlog::critical("unexpected: {}", error.what());
     return kBroken;
