@@ -94,8 +94,8 @@ std::uint32_t PixelNoise::row_key(int channel, int v) const {
 
 void PixelNoise::add_and_round(const float* value, float sigma, int u, int v, int channel,
                                int count, unsigned char* out) const {
-  noisy_row(value, normal_numbers(), sigma, row_key(channel, v), static_cast<std::uint32_t>(u), count,
-            out);
+  noisy_row(value, normal_numbers(), sigma, row_key(channel, v), static_cast<std::uint32_t>(u),
+            count, out);
 }
 
 std::vector<std::uint32_t> PixelNoise::row_keys(int channel, int rows) const {
