@@ -1,5 +1,7 @@
 #pragma once
 
+#include "look_follower.hpp"
+
 #include <map>
 #include <string>
 #include <vector>
@@ -42,6 +44,7 @@ class ReplayRecorder : public mission::Listener {
     double period_s = 1.0 / kPictures_hz;
     double due_s = 0.0;
   };
+  LookFollower follower_;
   std::vector<Schedule> schedules_;               ///< of run_.cameras
   std::map<CameraId, std::size_t> camera_index_;  ///< into run_.cameras
 };

@@ -1,9 +1,10 @@
+#include "campaign_figures.hpp"
 #include "commands.hpp"
+#include "object_file.hpp"
 #include "replay_recorder.hpp"
 
+#include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,33 +27,14 @@ struct ReportOptions {
   std::string out;
 };
 
-/// summary.json without what the program's version changes, or null with @p fault saying why.
-struct Summary {
-  nlohmann::json values;
-  std::string fault;
-};
-
-Summary summary_in(const fs::path& folder) {
-  constexpr std::uintmax_t kMaxBytes = 16U << 20U;
-  const fs::path file = folder / "summary.json";
-  std::error_code missing;
-  const auto bytes = fs::file_size(file, missing);
-  if (missing) return {nullptr, "there is no summary.json"};
-  if (bytes > kMaxBytes) return {nullptr, "summary.json is too large to be one"};
-  std::ifstream stream(file);
-  auto values = nlohmann::json::parse(stream, nullptr, false);
-  if (!values.is_object()) return {nullptr, "summary.json is no JSON object"};
-  values.erase("version");
-  return {values, {}};
-}
-
 /// What the page says of a folder whose drive the program no longer repeats.
 std::string compared(const fs::path& folder, const std::string& summary_json) {
-  const Summary found = summary_in(folder);
+  ObjectFile found = object_in(folder / "summary.json");
   if (!found.fault.empty()) return fmt::format("Driven again from mission.yaml: {}.", found.fault);
-  auto again = nlohmann::json::parse(summary_json);
-  again.erase("version");
-  if (found.values == again) return {};
+  auto again = nlohmann::ordered_json::parse(summary_json);
+  for (auto* each : {&found.values, &again}) each->erase("version");
+  // As sets of members: their order is none of the drive's.
+  if (nlohmann::json(found.values) == nlohmann::json(again)) return {};
   return "Driven again from mission.yaml, and this program's drive differs from the folder's: the "
          "figures on this page are not those of its summary.json.";
 }
@@ -60,8 +42,10 @@ std::string compared(const fs::path& folder, const std::string& summary_json) {
 report::ReplayRun replayed(const fs::path& folder) {
   const fs::path mission_file = folder / "mission.yaml";
   if (!fs::exists(mission_file))
-    throw InputError(folder.string() +
-                     " is no run folder: there is no mission.yaml; `vigia run` makes one");
+    throw InputError(
+        folder.string() +
+        " is no run folder: there is no mission.yaml; `vigia run` makes one, and `vigia "
+        "evaluate` a campaign's");
   const mission::MissionSetup setup = mission::load_mission(mission_file);
   evaluation::DriveScorer scorer;
   ReplayRecorder recorder(scorer);
@@ -72,7 +56,29 @@ report::ReplayRun replayed(const fs::path& folder) {
   return run;
 }
 
+/// Whether it is a campaign's: one that has both files is a run folder.
+bool is_campaign(const fs::path& folder) {
+  if (fs::exists(folder / "mission.yaml")) return false;
+  const auto there = [&](const char* name) { return fs::exists(folder / name); };
+  return there("results.csv") || there("campaign.json") || there("plan.json") || there("missions");
+}
+
+int report_campaign(const ReportOptions& options) {
+  if (options.folders.size() > 1)
+    throw InputError(
+        fmt::format("found {} folders, a campaign's among them; must be run folders, "
+                    "or one campaign's",
+                    options.folders.size()));
+  const fs::path folder = options.folders.front();
+  const fs::path out = options.out.empty() ? folder / "report.html" : fs::path(options.out);
+  write_file(out, campaign_page_of(folder));
+  fmt::print("{}\n", out.string());
+  return 0;
+}
+
 int report(const ReportOptions& options) {
+  if (std::any_of(options.folders.begin(), options.folders.end(), is_campaign))
+    return report_campaign(options);
   std::vector<report::ReplayRun> runs;
   for (const std::string& folder : options.folders) runs.push_back(replayed(folder));
   fs::path out = options.out;
@@ -88,10 +94,12 @@ int report(const ReportOptions& options) {
 void add_report(CLI::App& app, int& status) {
   auto options = std::make_shared<ReportOptions>();
   CLI::App* command = app.add_subcommand(
-      "report", "Drive missions of run folders again and replay them on one page");
-  command->add_option("folders", options->folders, "Run folders")->required();
+      "report",
+      "Drive missions of run folders again and replay them on one page, or make a campaign's page");
+  command->add_option("folders", options->folders, "Run folders, or one campaign's folder")
+      ->required();
   command->add_option("-o,--out", options->out,
-                      "The page (default report.html in the run folder; of several folders "
+                      "The page (default report.html in the folder; of several folders "
                       "comparison.html here)");
   command->callback([options, &status] { status = report(*options); });
 }
