@@ -50,7 +50,7 @@ bool may_be_seen(const Intrinsics& k, const Eigen::Vector3d& centre_c, double ra
   return in_image(k, *uv, -reach);
 }
 
-constexpr int kMaxSamples = 32;
+constexpr int kMaxSamples = 16;
 
 /// kMaxSamples points once round.
 const std::vector<Eigen::Vector2d>& unit_circle() {
@@ -264,7 +264,7 @@ DecalView::DecalView(const Decal& decal, const Eigen::Isometry3d& cMw, const Cam
   const Window frame{0, 0, image_width(model), image_height(model)};
   const int margin = decal.blurred ? blur_margin(blur_px) : 1;
   box_ = intersect(
-      grown(outline_box(cMd, radius, model, decal.blurred ? kMaxSamples : kMaxSamples / 4), margin),
+      grown(outline_box(cMd, radius, model, decal.blurred ? kMaxSamples : kMaxSamples / 2), margin),
       frame);
   if (box_.empty()) return;
 

@@ -204,6 +204,10 @@ std::vector<float> gaussian_kernel(double sigma) {
 }
 
 float covered_share(const LocalConic& q) {
+  // Farther from the outline than a corner of the pixel, with what the conic bends until there.
+  const double reach = 0.5 * (std::abs(q.d) + std::abs(q.e)) +
+                       0.25 * (std::abs(q.a) + std::abs(q.b) + std::abs(q.c)) + 1e-9;
+  if (std::abs(q.f) > reach) return q.f > 0.0 ? 1.0F : 0.0F;
   return std::abs(q.d) >= std::abs(q.e) ? covered_share(q.a, q.b, q.c, q.d, q.e, q.f)
                                         : covered_share(q.c, q.b, q.a, q.e, q.d, q.f);
 }

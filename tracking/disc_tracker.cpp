@@ -105,7 +105,6 @@ class DiscTracker::State {
   DiscTrackerParameters parameters_;
   DiscFinder finder_;
   EdgeFitter fitter_;
-  SeededDot dot_;
 
   bool tracking_ = false;
   EllipseShape shape_;
@@ -232,9 +231,11 @@ std::optional<EllipseShape> DiscTracker::State::follow_dot(const vpImage<unsigne
   if (!contains(seedable, at)) return std::nullopt;
   const int middle = static_cast<int>(0.5 * (profile_.disc + profile_.ground));
   const bool dark = profile_.disc < profile_.ground;
-  const auto dot = dark ? dot_.track(image, seed, 0, middle) : dot_.track(image, seed, middle, 255);
+  SeededDot tracker;  // copies of what it followed before cost as much as following does
+  const auto dot =
+      dark ? tracker.track(image, seed, 0, middle) : tracker.track(image, seed, middle, 255);
   if (!dot) return std::nullopt;
-  const vpRect box = dot_.getBBox();
+  const vpRect box = tracker.getBBox();
   const Window dot_window{static_cast<int>(box.getLeft()), static_cast<int>(box.getTop()),
                           static_cast<int>(box.getWidth()), static_cast<int>(box.getHeight())};
   if (touches(dot_window, window)) return std::nullopt;

@@ -39,6 +39,7 @@ NearFaces::NearFaces(const FloorPlan& plan, const Eigen::Vector2d& origin, doubl
                      double above_m)
     : plan_(&plan), origin_(origin), reach_m_(reach_m) {
   constexpr double kSlack_m = 1e-6;  // more than rounding takes off a distance
+  sides_.reserve(std::min<std::size_t>(plan.faces().size(), 16));
   for (const Wall& face : plan.faces()) {
     if (face.height_m <= above_m) continue;
     if (distance_to_segment(origin, face.a, face.b) > reach_m + kSlack_m) continue;

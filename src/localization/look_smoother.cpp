@@ -68,6 +68,21 @@ void pass(const Motion& motion, const Vector6& at, const Vector6& next, const Lo
   state.stamp = read.to;
 }
 
+/// L⁻¹. Eigen's triangular solver prepares for large matrices, which costs more than this does.
+template <int N>
+Eigen::Matrix<double, N, N> inverse_of_lower(const Eigen::Matrix<double, N, N>& L) {
+  Eigen::Matrix<double, N, N> inverse = Eigen::Matrix<double, N, N>::Zero();
+  for (int j = 0; j < N; ++j) {
+    inverse(j, j) = 1.0 / L(j, j);
+    for (int i = j + 1; i < N; ++i) {
+      double sum = 0.0;
+      for (int k = j; k < i; ++k) sum += L(i, k) * inverse(k, j);
+      inverse(i, j) = -sum / L(i, i);
+    }
+  }
+  return inverse;
+}
+
 /// Updates @p state, which lies @p off from the point of linearisation.
 template <int N>
 void update(const Linearised<N>& image, const Vector6& off, LookState& state,
@@ -75,12 +90,13 @@ void update(const Linearised<N>& image, const Vector6& off, LookState& state,
   const Eigen::Matrix<double, N, 1> innovation = image.y - image.H * off;
   const Eigen::Matrix<double, N, 6> HP = image.H * state.covariance;
   const Eigen::LLT<Eigen::Matrix<double, N, N>> S(HP * image.H.transpose() + image.R);
-  const Eigen::Matrix<double, N, 6> W = S.matrixL().solve(HP);
-  const Eigen::Matrix<double, N, 1> y = S.matrixL().solve(innovation);
+  const Eigen::Matrix<double, N, N> whiten = inverse_of_lower<N>(S.matrixL());
+  const Eigen::Matrix<double, N, 6> W = whiten * HP;
+  const Eigen::Matrix<double, N, 1> y = whiten * innovation;
   state.mean += W.transpose() * y;
   state.covariance -= W.transpose() * W;
   about.rows = N;
-  about.G_t.template leftCols<N>() = S.matrixL().solve(image.H).transpose();
+  about.G_t.template leftCols<N>() = (whiten * image.H).transpose();
   about.W_t.template leftCols<N>() = W.transpose();
   about.y.template head<N>() = y;
 }
