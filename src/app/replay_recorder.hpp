@@ -1,5 +1,7 @@
 #pragma once
 
+#include "recording.hpp"
+
 #include <map>
 #include <string>
 #include <vector>
@@ -38,10 +40,6 @@ class ReplayRecorder : public mission::Listener {
   const evaluation::DriveScorer& scorer_;
   const mission::MissionSetup* setup_ = nullptr;
   report::ReplayRun run_;
-  struct Schedule {
-    double period_s = 1.0 / kPictures_hz;
-    double due_s = 0.0;
-  };
   std::vector<Schedule> schedules_;               ///< of run_.cameras
   std::map<CameraId, std::size_t> camera_index_;  ///< into run_.cameras
 };

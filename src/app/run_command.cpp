@@ -21,8 +21,6 @@
 namespace vigia::app {
 namespace {
 
-constexpr int kInterrupted = 130;  // as a shell says of SIGINT
-
 struct RunOptions {
   std::string mission;
   std::optional<std::uint64_t> seed;
