@@ -23,13 +23,13 @@ struct ExportOptions {
 };
 
 int export_run(const ExportOptions& options) {
-  mission_file(options.folder);  // before a file is begun
+  const mission::MissionSetup setup = mission::load_mission(mission_file(options.folder));
   Interruption interruption;
   evaluation::DriveScorer scorer;
   Progress progress(options.quiet);
   report::McapWriter writer(options.mcap);
   McapRecorder recorder(writer, options.images_hz);
-  run_again(options.folder, scorer, {&interruption, &progress, &recorder});
+  run_again(options.folder, setup, scorer, {&interruption, &progress, &recorder});
   writer.finish();
   fmt::print("{}\n", options.mcap);
   return 0;

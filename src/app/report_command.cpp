@@ -22,9 +22,10 @@ struct ReportOptions {
 };
 
 report::ReplayRun replayed(const fs::path& folder) {
+  const mission::MissionSetup setup = mission::load_mission(mission_file(folder));
   evaluation::DriveScorer scorer;
   ReplayRecorder recorder(scorer);
-  const std::string note = run_again(folder, scorer, {&recorder});
+  const std::string note = run_again(folder, setup, scorer, {&recorder});
   report::ReplayRun run = recorder.run(fmt::format("vigia run {}", mission_file(folder).string()));
   run.note = note;
   return run;

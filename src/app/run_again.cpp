@@ -55,9 +55,9 @@ fs::path mission_file(const fs::path& folder) {
   return file;
 }
 
-std::string run_again(const fs::path& folder, evaluation::DriveScorer& scorer,
+std::string run_again(const fs::path& folder, const mission::MissionSetup& setup,
+                      evaluation::DriveScorer& scorer,
                       const std::vector<mission::Listener*>& listeners) {
-  const mission::MissionSetup setup = mission::load_mission(mission_file(folder));
   std::vector<mission::Listener*> all{&scorer};
   all.insert(all.end(), listeners.begin(), listeners.end());
   mission::run_mission(setup, setup.seed, all);

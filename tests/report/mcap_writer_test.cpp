@@ -179,7 +179,8 @@ TEST_F(McapFile, ReachesEveryMessageByItsIndexes) {
     Cursor body(chunk.content);
     EXPECT_EQ(body.number(8), first);
     EXPECT_EQ(body.number(8), last);
-    EXPECT_EQ(body.number(8), chunk.content.size() - body.at() - 16);  // uncompressed
+    constexpr std::size_t kFields = 3 * 8 + 4 + 4 + 8;  // before the messages
+    EXPECT_EQ(body.number(8), chunk.content.size() - kFields);
     const auto crc = body.number(4);
     EXPECT_EQ(body.text(), "");
     const std::string_view messages = body.take(body.number(8));
