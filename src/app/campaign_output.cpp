@@ -1,5 +1,7 @@
 #include "campaign_output.hpp"
 
+#include "campaign_figures.hpp"
+
 #include <algorithm>
 #include <thread>
 #include <utility>
@@ -59,6 +61,7 @@ int write_campaign(const std::filesystem::path& folder, const evaluation::Campai
   write_file(folder / "table.md", evaluation::campaign_markdown(campaign, statistics));
   report::draw_arms(picture_of(campaign, statistics), folder / "arms.png");
   write_file(folder / "summary.json", json);
+  write_file(folder / "report.html", campaign_page_of(folder));
   if (!output.csv.empty()) write_file(output.csv, csv);
   if (!output.sqlite.empty()) evaluation::write_database(output.sqlite, campaign, scores);
   if (!output.ompl.empty())
@@ -66,8 +69,10 @@ int write_campaign(const std::filesystem::path& folder, const evaluation::Campai
   if (output.json)
     fmt::print("{}", json);
   else
-    fmt::print("{}\n{}\nfolder: {}\n", evaluation::campaign_text(campaign, statistics),
-               evaluation::worst_missions_text(campaign, worst, folder), folder.string());
+    fmt::print("{}\n{}\nfolder: {}\npage:   {}/report.html\n",
+               evaluation::campaign_text(campaign, statistics),
+               evaluation::worst_missions_text(campaign, worst, folder), folder.string(),
+               folder.string());
   const bool all_arrived = std::all_of(statistics.begin(), statistics.end(), [](const auto& arm) {
     return arm.over_seeds.arrived == arm.over_seeds.runs;
   });

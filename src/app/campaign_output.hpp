@@ -21,8 +21,8 @@ struct CampaignOutput {
   void add_options(CLI::App& command);
 };
 
-/// Writes results.csv, summary.json, table.md and arms.png into the folder and prints the
-/// statistics. Gives the program's exit status: 1 when a mission did not arrive. @p programs as
+/// Writes results.csv, summary.json, table.md, arms.png and report.html into the folder and prints
+/// the statistics. Gives the program's exit status: 1 when a mission did not arrive. @p programs as
 /// campaign_json() takes them.
 int write_campaign(const std::filesystem::path& folder, const evaluation::Campaign& campaign,
                    std::map<evaluation::CampaignTask, evaluation::DriveScore> finished,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "look_follower.hpp"
+
 #include <filesystem>
 #include <vector>
 
@@ -14,6 +16,7 @@ class DrivePicture : public mission::Listener {
  public:
   void on_start(const mission::MissionStart& start) override;
   void on_tick(const mission::Tick& tick) override;
+  void on_event(const mission::Event& event) override;
 
   /// What was collected, with title and figures. Refers to the mission's world.
   report::MapDrive drive(const evaluation::DriveScore& score) const;
@@ -26,7 +29,10 @@ class DrivePicture : public mission::Listener {
   std::vector<Pose2> truth_;
   std::vector<report::MapPose> estimate_;
   std::vector<Pose2> odometry_;
+  std::vector<std::size_t> jumps_;
+  std::vector<report::MapMark> marks_;
   std::vector<report::MapLook> looks_;
+  LookFollower follower_;
   LookId look_ = 0;
 };
 

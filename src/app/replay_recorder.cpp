@@ -1,5 +1,7 @@
 #include "replay_recorder.hpp"
 
+#include "suitability_timeline.hpp"
+
 #include <cmath>
 
 #include <fmt/format.h>
@@ -28,6 +30,7 @@ bool sees_all_round(const Camera& camera) {
 void ReplayRecorder::on_start(const mission::MissionStart& start) {
   setup_ = &start.setup;
   run_ = {};
+  follower_.on_start(start);
   schedules_.clear();
   camera_index_.clear();
   for (const Camera& camera : setup_->robot.rig().cameras) {
@@ -49,8 +52,8 @@ void ReplayRecorder::on_tick(const mission::Tick& tick) {
   run_.pan.push_back(tick.truth.head.pan);
   run_.tilt.push_back(tick.truth.head.tilt);
   run_.zoom_mm.push_back(tick.truth.zoom_mm);
-  const bool watches = tick.attention && tick.attention->order;
-  run_.target.push_back(watches ? std::optional(tick.attention->order->landmark) : std::nullopt);
+  const auto look = follower_.process(tick);
+  run_.target.push_back(look ? std::optional(look->landmark) : std::nullopt);
   for (std::size_t i = 0; i < run_.localizers.size(); ++i) {
     run_.localizers[i].beliefs.push_back(with_likeliest(*tick.estimator.localizers[i].belief));
     run_.localizers[i].bound_m.push_back(std::sqrt(scorer_.bound_position_m2(i)));
@@ -111,10 +114,12 @@ report::ReplayRun ReplayRecorder::run(const std::string& command) const {
   run.world = setup_->world;
   run.planned = setup_->path;
   run.robot_radius_m = setup_->robot.robot.radius_m;
-  if (directed_camera(setup_->robot.rig()) != nullptr)
+  if (directed_camera(setup_->robot.rig()) != nullptr) {
     run.limits_m = {setup_->look.trigger.limit_1_m, setup_->look.trigger.limit_2_m};
-  else
+    run.suitability = suitability(*setup_, run);
+  } else {
     run.pan = run.tilt = run.zoom_mm = {};
+  }
   return run;
 }
 

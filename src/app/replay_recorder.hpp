@@ -1,5 +1,6 @@
 #pragma once
 
+#include "look_follower.hpp"
 #include "recording.hpp"
 
 #include <map>
@@ -40,6 +41,7 @@ class ReplayRecorder : public mission::Listener {
   const evaluation::DriveScorer& scorer_;
   const mission::MissionSetup* setup_ = nullptr;
   report::ReplayRun run_;
+  LookFollower follower_;
   std::vector<Schedule> schedules_;               ///< of run_.cameras
   std::map<CameraId, std::size_t> camera_index_;  ///< into run_.cameras
 };

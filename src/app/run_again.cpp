@@ -1,6 +1,6 @@
 #include "run_again.hpp"
 
-#include <fstream>
+#include "object_file.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -14,33 +14,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// summary.json without what the program's version changes, or null with @p fault saying why.
-struct Summary {
-  nlohmann::json values;
-  std::string fault;
-};
-
-Summary summary_in(const fs::path& folder) {
-  constexpr std::uintmax_t kMaxBytes = 16U << 20U;
-  const fs::path file = folder / "summary.json";
-  std::error_code missing;
-  const auto bytes = fs::file_size(file, missing);
-  if (missing) return {nullptr, "there is no summary.json"};
-  if (bytes > kMaxBytes) return {nullptr, "summary.json is too large to be one"};
-  std::ifstream stream(file);
-  auto values = nlohmann::json::parse(stream, nullptr, false);
-  if (!values.is_object()) return {nullptr, "summary.json is no JSON object"};
-  values.erase("version");
-  return {values, {}};
-}
-
-/// What the page says of a folder whose drive the program no longer repeats.
+/// What is said of a folder whose drive the program no longer repeats.
 std::string compared(const fs::path& folder, const std::string& summary_json) {
-  const Summary found = summary_in(folder);
+  ObjectFile found = object_in(folder / "summary.json");
   if (!found.fault.empty()) return fmt::format("Driven again from mission.yaml: {}.", found.fault);
-  auto again = nlohmann::json::parse(summary_json);
-  again.erase("version");
-  if (found.values == again) return {};
+  auto again = nlohmann::ordered_json::parse(summary_json);
+  for (auto* each : {&found.values, &again}) each->erase("version");
+  // As sets of members: their order is none of the drive's.
+  if (nlohmann::json(found.values) == nlohmann::json(again)) return {};
   return "Driven again from mission.yaml, and this program's drive differs from the folder's: the "
          "figures shown are not those of its summary.json.";
 }
@@ -50,8 +31,10 @@ std::string compared(const fs::path& folder, const std::string& summary_json) {
 fs::path mission_file(const fs::path& folder) {
   fs::path file = folder / "mission.yaml";
   if (!fs::exists(file))
-    throw InputError(folder.string() +
-                     " is no run folder: there is no mission.yaml; `vigia run` makes one");
+    throw InputError(
+        folder.string() +
+        " is no run folder: there is no mission.yaml; `vigia run` makes one, and `vigia "
+        "evaluate` a campaign's");
   return file;
 }
 

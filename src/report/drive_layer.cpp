@@ -29,9 +29,9 @@ std::vector<Eigen::Vector2d> positions(const std::vector<MapPose>& poses) {
 }
 
 // The instants nearest to every metre of travel, the first metre first.
-std::vector<std::size_t> every_metre(const std::vector<Pose2>& truth) {
+std::vector<std::size_t> every_metre(const MapDrive& drive) {
   std::vector<std::size_t> instants;
-  const std::vector<double> travelled = travelled_m(truth);
+  const std::vector<double> travelled = travelled_m(drive);
   for (std::size_t i = 0; i < travelled.size(); ++i)
     if (travelled[i] >= static_cast<double>(instants.size()) + 1.0) instants.push_back(i);
   return instants;
@@ -39,7 +39,7 @@ std::vector<std::size_t> every_metre(const std::vector<Pose2>& truth) {
 
 double largest_semi_axis_m(const MapDrive& drive) {
   double largest = 0.0;
-  for (const std::size_t i : every_metre(drive.truth))
+  for (const std::size_t i : every_metre(drive))
     largest = std::max(largest, position_sigma_m(drive.estimate[i].covariance));
   return largest * std::sqrt(kChi2At95);
 }
@@ -56,12 +56,21 @@ void draw_sight_lines(const Sheet& sheet, const MapView& view, const MapDrive& d
   }
 }
 
+void draw_cut_line(const Sheet& sheet, const MapView& view, const CutLine& line,
+                   const Stroke& driven, const Stroke& jump) {
+  for (const auto& piece : line.pieces) {
+    sheet.polyline(view(piece));
+    sheet.stroke(driven);
+  }
+  for (const auto& [from, to] : line.jumps) sheet.line(view(from), view(to), jump);
+}
+
 void draw_paths(const Sheet& sheet, const MapView& view, const MapDrive& drive,
                 const DriveStyle& style) {
   sheet.polyline(view(positions(drive.odometry)));
   sheet.stroke(style.odometry);
-  sheet.polyline(view(positions(drive.estimate)));
-  sheet.stroke(style.estimate);
+  draw_cut_line(sheet, view, cut_where_far(positions(drive.estimate)), style.estimate,
+                style.correction);
   sheet.polyline(view(drive.planned.points()));
   sheet.stroke(style.planned);
 }
@@ -70,7 +79,7 @@ void draw_ellipses(const Sheet& sheet, const MapView& view, const MapDrive& driv
                    const DriveStyle& style) {
   if (drive.estimate.empty()) return;
   const double k = ellipse_scale(drive) * std::sqrt(kChi2At95);
-  for (const std::size_t i : every_metre(drive.truth)) {
+  for (const std::size_t i : every_metre(drive)) {
     const MapPose& at = drive.estimate[i];
     const auto outline =
         view(ellipse_outline(at.pose.position(), at.covariance.topLeftCorner<2, 2>(), k));
@@ -82,8 +91,9 @@ void draw_ellipses(const Sheet& sheet, const MapView& view, const MapDrive& driv
 }
 
 // A chevron along the direction of travel in the middle of every second metre.
-void draw_arrows(const Sheet& sheet, const MapView& view, const std::vector<Pose2>& truth) {
-  const std::vector<double> travelled = travelled_m(truth);
+void draw_arrows(const Sheet& sheet, const MapView& view, const MapDrive& drive) {
+  const std::vector<Pose2>& truth = drive.truth;
+  const std::vector<double> travelled = travelled_m(drive);
   double next = 0.5;
   for (std::size_t i = 1; i < truth.size(); ++i) {
     if (travelled[i] < next) continue;
@@ -145,6 +155,30 @@ void draw_looks(const Sheet& sheet, const MapView& view, const MapDrive& drive,
     sheet.stroke({palette::kInk, 1.3});
     draw_tag(sheet, labels, std::to_string(++number), at, 8.0, {0.0, -1.0}, {13.0}, palette::kInk,
              kHalo);
+  }
+}
+
+// Chevrons in the middle of the jumps say whither.
+void draw_jumps(const Sheet& sheet, const MapView& view, const MapDrive& drive) {
+  for (const auto& [from, to] : cut_at(positions(drive.truth), drive.jumps).jumps) {
+    const Eigen::Vector2d along = view(to) - view(from);
+    if (along.norm() > 0.0)
+      draw_chevron(sheet, view(from) + 0.5 * along, along.normalized(), 5.5, 2.4);
+  }
+}
+
+void draw_marks(const Sheet& sheet, const MapView& view, const MapDrive& drive,
+                LabelPlacer& labels) {
+  constexpr double kHalf = 4.5;
+  for (const MapMark& mark : drive.marks) {
+    const Eigen::Vector2d at = view(drive.truth[mark.instant].position());
+    const Colour colour = mark.grave ? palette::kVermillion : palette::kInk;
+    sheet.rectangle({at.x() - kHalf, at.y() - kHalf, 2.0 * kHalf, 2.0 * kHalf});
+    sheet.fill(colour);
+    sheet.rectangle({at.x() - kHalf, at.y() - kHalf, 2.0 * kHalf, 2.0 * kHalf});
+    sheet.stroke({palette::kWhite, 1.2});
+    block_disc(labels, at, kHalf);
+    draw_tag(sheet, labels, mark.text, at, 9.0, {1.0, 0.0}, {13.0, true}, colour, kHalo);
   }
 }
 
@@ -212,14 +246,16 @@ void draw_drive(const Sheet& sheet, const MapView& view, const MapDrive& drive,
   LabelPlacer labels(view.box());
   avoid_paths(labels, view, drive);
   draw_sight_lines(sheet, view, drive, style);
-  sheet.polyline(view(positions(drive.truth)));
-  sheet.stroke(style.truth);
+  draw_cut_line(sheet, view, cut_at(positions(drive.truth), drive.jumps), style.truth,
+                style.kidnapping);
   draw_ellipses(sheet, view, drive, style);
   draw_paths(sheet, view, drive, style);
-  draw_arrows(sheet, view, drive.truth);
+  draw_arrows(sheet, view, drive);
+  draw_jumps(sheet, view, drive);
   draw_rings(sheet, view, drive, style);
   draw_landmarks(sheet, view, drive, labels);
   draw_ends(sheet, view, drive, labels);
+  draw_marks(sheet, view, drive, labels);
   draw_looks(sheet, view, drive, labels);
 }
 

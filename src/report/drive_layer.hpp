@@ -19,6 +19,8 @@ struct DriveStyle {
   Stroke truth{palette::kTruth.with_alpha(0.75), 8.0};
   Stroke estimate{palette::kBlue, 2.5};
   Stroke odometry{palette::kVermillion, 2.2, {12.0, 4.0, 2.0, 4.0}};
+  Stroke kidnapping{palette::kVermillion, 2.2, {3.0, 5.0}};
+  Stroke correction{palette::kBlue.with_alpha(0.5), 1.2, {3.0, 5.0}};  ///< of the estimate
   Stroke ellipse{palette::kBlue, 1.6};
   double ellipse_fill = 0.16;
   Stroke ring{palette::kInk, 1.8, {6.0, 4.0}};

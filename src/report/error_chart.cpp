@@ -4,6 +4,7 @@
 #include "travel.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -21,7 +22,7 @@ struct Series {
 
 Series series_of(const MapDrive& drive) {
   Series series;
-  series.distance_m = travelled_m(drive.truth);
+  series.distance_m = travelled_m(drive);
   for (std::size_t i = 0; i < drive.truth.size(); ++i) {
     const Eigen::Vector2d truth = drive.truth[i].position();
     if (!drive.estimate.empty()) {
@@ -133,6 +134,26 @@ void draw_looks(const Sheet& sheet, const ErrorScales& at, const MapDrive& drive
   }
 }
 
+// A line at each mark, its word on top in the first row that has room.
+void draw_marks(const Sheet& sheet, const ErrorScales& at, const MapDrive& drive,
+                const Series& series) {
+  const Font font{11.0, true};
+  std::array<double, 4> free_from{};
+  for (const MapMark& mark : drive.marks) {
+    const double x = at(series.distance_m[mark.instant], 0.0).x();
+    const Colour colour = mark.grave ? palette::kVermillion : palette::kMuted;
+    sheet.line({x, at.frame.y}, {x, at.frame.bottom()}, {colour.with_alpha(0.7), 1.2, {5.0, 4.0}});
+    const double width = sheet.text_size(mark.text, font).x();
+    const double left = std::min(x + 3.0, at.frame.right() - width - 2.0);
+    const auto row = std::find_if(free_from.begin(), free_from.end(),
+                                  [left](double free) { return free <= left; });
+    if (row == free_from.end()) continue;
+    const double y = at.frame.y + 9.0 + 13.0 * static_cast<double>(row - free_from.begin());
+    sheet.outlined_text(mark.text, {left, y}, font, colour, palette::kWhite, 2.0);
+    *row = left + width + 6.0;
+  }
+}
+
 double rms(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double value : values) sum += value * value;
@@ -175,6 +196,7 @@ void draw_error_chart(const Sheet& sheet, const Box& frame, const MapDrive& driv
   draw_frame(sheet, at);
   draw_curves(sheet, at, series, style);
   draw_looks(sheet, at, drive, series);
+  draw_marks(sheet, at, drive, series);
   draw_keys(sheet, frame, drive, series, style);
   sheet.upright_text("error, cm", {frame.x - 46.0, frame.y + 0.5 * frame.height}, {14.0},
                      palette::kInk);

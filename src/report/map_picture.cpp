@@ -95,6 +95,8 @@ std::vector<LegendEntry> legend_of(const MapDrive& drive, const DriveStyle& styl
     entries.push_back(line_entry(style.estimate, drive.estimate_name));
     entries.push_back(ellipse_entry(drive, style));
   }
+  if (!drive.jumps.empty())
+    entries.push_back(line_entry(style.kidnapping, "kidnapped: put elsewhere, not driven"));
   if (!drive.odometry.empty()) entries.push_back(line_entry(style.odometry, "odometry"));
   if (!drive.world.landmarks.all().empty()) entries.push_back(landmark_entry());
   const auto fused = [](const MapLook& look) { return look.fused; };
@@ -132,6 +134,11 @@ void check(const MapDrive& drive) {
         "draw_map: truth, estimate and odometry must have the same length, found " +
         std::to_string(drive.truth.size()) + ", " + std::to_string(drive.estimate.size()) +
         " and " + std::to_string(drive.odometry.size()));
+  const auto beyond = [&](std::size_t instant) { return instant >= drive.truth.size(); };
+  const bool marks_fit = std::none_of(drive.marks.begin(), drive.marks.end(),
+                                      [&](const MapMark& mark) { return beyond(mark.instant); });
+  if (!marks_fit || std::any_of(drive.jumps.begin(), drive.jumps.end(), beyond))
+    throw std::invalid_argument("draw_map: a jump or a mark lies beyond the last instant of truth");
 }
 
 // The legend's height depends on the width of its words, so a trial sheet measures it.

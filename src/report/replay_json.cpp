@@ -188,10 +188,18 @@ Json ellipse_json(const std::optional<Ellipse>& ellipse) {
           rounded(ellipse->psi)};
 }
 
+/// To a tenth of a pixel: a scan of a field has hundreds in every picture.
+Json pixels(const std::vector<Eigen::Vector2d>& places) {
+  Json list = Json::array();
+  for (const auto& p : places)
+    list.push_back({std::round(10.0 * p.x()) / 10.0, std::round(10.0 * p.y()) / 10.0});
+  return list;
+}
+
 Json overlay_json(const imaging::Overlay& overlay) {
   return {{"predicted", ellipse_json(overlay.predicted)},
           {"measured", ellipse_json(overlay.measured)},
-          {"points", points(overlay.points)},
+          {"points", pixels(overlay.points)},
           {"principal", overlay.principal_point ? point(*overlay.principal_point) : Json(nullptr)},
           {"lines", overlay.lines}};
 }
@@ -216,6 +224,20 @@ Json truth_json(const ReplayRun& run, const Ticks& ticks) {
   return {{"x", ticks.column(run.truth, [](const Pose2& p) { return rounded(p.x); })},
           {"y", ticks.column(run.truth, [](const Pose2& p) { return rounded(p.y); })},
           {"th", ticks.column(run.truth, [](const Pose2& p) { return rounded(p.theta); })}};
+}
+
+Json suitability_json(const ReplaySuitability& suitability) {
+  Json times = Json::array();
+  Json landmarks = Json::array();
+  for (const double t_s : suitability.t_s) times.push_back(rounded(t_s));
+  for (const auto& [id, values] : suitability.landmarks) {
+    Json list = Json::array();
+    for (const double value : values)
+      list.push_back(std::isfinite(value) ? Json(std::round(value * 100.0) / 100.0)
+                                          : Json(nullptr));
+    landmarks.push_back({{"id", id}, {"values", list}});
+  }
+  return {{"t", times}, {"landmarks", landmarks}};
 }
 
 Json events_json(const std::vector<ReplayEvent>& events) {
@@ -252,6 +274,7 @@ Json run_json(const ReplayRun& run, int max_ticks) {
           {"tilt", ticks.column(run.tilt, rounded)},
           {"zoom", ticks.column(run.zoom_mm, rounded)},
           {"target", ticks.column(run.target, target)},
+          {"suitability", suitability_json(run.suitability)},
           {"localizers", localizers},
           {"cameras", cameras},
           {"events", events_json(run.events)}};
@@ -265,19 +288,6 @@ std::string subtitle_of(const std::vector<ReplayRun>& runs) {
                      summary.value("sim_s", 0.0));
 }
 
-/// Without '<', which only strings hold.
-std::string without_brackets(const std::string& json) {
-  std::string out;
-  out.reserve(json.size());
-  for (const char c : json) {
-    if (c == '<')
-      out += "\\u003c";
-    else
-      out += c;
-  }
-  return out;
-}
-
 }  // namespace
 
 std::string replay_json(const std::vector<ReplayRun>& runs, const std::string& title,
@@ -285,7 +295,7 @@ std::string replay_json(const std::vector<ReplayRun>& runs, const std::string& t
   Json list = Json::array();
   for (const auto& run : runs) list.push_back(run_json(run, max_ticks));
   const Json data = {{"title", title}, {"subtitle", subtitle_of(runs)}, {"runs", list}};
-  return without_brackets(data.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return data.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace vigia::report

@@ -7,7 +7,7 @@
 
 namespace vigia::report {
 
-/// The data of a replay page as JSON without any '<', so that it can stand in a page.
+/// The data of a replay page as JSON.
 std::string replay_json(const std::vector<ReplayRun>& runs, const std::string& title,
                         int max_ticks);
 

@@ -138,6 +138,44 @@ TEST_F(MapPicture, DifferentLengthsAreRefused) {
   EXPECT_THROW(draw_map(drive_, folder_ / "map.png"), std::invalid_argument);
 }
 
+TEST_F(MapPicture, JumpsAndMarksBeyondTheDriveAreRefused) {
+  const std::size_t beyond = drive_.truth.size();
+  drive_.jumps = {beyond};
+  EXPECT_THROW(draw_map(drive_, folder_ / "map.png"), std::invalid_argument);
+  drive_.jumps = {};
+  drive_.marks = {{beyond, "lost", true}};
+  EXPECT_THROW(draw_map(drive_, folder_ / "map.png"), std::invalid_argument);
+}
+
+TEST_F(MapPicture, MarksAndJumpsChangeThePicture) {
+  draw_map(drive_, folder_ / "plain.png");
+  drive_.marks = {{300, "lost 12 s", true}};
+  draw_map(drive_, folder_ / "marked.png");
+  drive_.jumps = {300};
+  draw_map(drive_, folder_ / "kidnapped.png");
+  EXPECT_NE(bytes_of(folder_ / "plain.png"), bytes_of(folder_ / "marked.png"));
+  EXPECT_NE(bytes_of(folder_ / "marked.png"), bytes_of(folder_ / "kidnapped.png"));
+}
+
+TEST(Travel, ARobotThatIsPutElsewhereHasNotDrivenThere) {
+  const WorldMap world = synthetic_world();
+  MapDrive drive{world};
+  drive.truth = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {5.0, 3.0, 0.0}, {5.0, 4.0, 0.0}};
+  EXPECT_THAT(travelled_m(drive), ::testing::ElementsAre(0.0, 1.0, 6.0, 7.0));
+  drive.jumps = {2};
+  EXPECT_THAT(travelled_m(drive), ::testing::ElementsAre(0.0, 1.0, 1.0, 2.0));
+}
+
+TEST(Travel, ALineIsCutAtItsJumps) {
+  const std::vector<Eigen::Vector2d> points{{0.0, 0.0}, {0.1, 0.0}, {4.0, 0.0}, {4.1, 0.0}};
+  for (const CutLine& line : {cut_at(points, {2}), cut_where_far(points)}) {
+    ASSERT_EQ(line.pieces.size(), 2U);
+    EXPECT_THAT(line.pieces[1], ::testing::ElementsAre(points[2], points[3]));
+    ASSERT_EQ(line.jumps.size(), 1U);
+    EXPECT_EQ(line.jumps[0], std::make_pair(points[1], points[2]));
+  }
+}
+
 TEST_F(MapPicture, StatedEllipseScaleIsKeptAndAMissingOneIsChosen) {
   drive_.ellipse_scale = 7.0;
   EXPECT_EQ(ellipse_scale(drive_), 7.0);

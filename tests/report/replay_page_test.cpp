@@ -42,7 +42,7 @@ std::string between(const std::string& text, const std::string& from, const std:
 
 nlohmann::json data_of(const std::string& page) {
   return nlohmann::json::parse(
-      between(page, "<script type=\"application/json\" id=\"replay\">", "</script>"));
+      between(page, "<script type=\"application/json\" id=\"data\">", "</script>"));
 }
 
 TEST(ReplayPage, HoldsTheDrivesErrorsUncertaintyAndBound) {
@@ -82,6 +82,17 @@ TEST(ReplayPage, RefersToNothingElse) {
   EXPECT_THAT(page, HasSubstr("default-src 'none'"));
   EXPECT_THAT(page, Not(HasSubstr("<script src")));
   EXPECT_THAT(page, Not(HasSubstr("stylesheet")));
+}
+
+TEST(ReplayPage, HoldsTheSuitabilityOfLandmarksAndLeavesOutWhereThereIsNone) {
+  ReplayRun run = drive(5);
+  run.suitability = {{0.04, 0.2}, {{7, {0.625, NAN}}}};
+  const auto timeline = data_of(replay_page({run}))["runs"][0]["suitability"];
+  EXPECT_EQ(timeline,
+            nlohmann::json::parse(
+                R"({"t": [0.04, 0.2], "landmarks": [{"id": 7, "values": [0.63, null]}]})"));
+  run.suitability.t_s.pop_back();
+  EXPECT_THROW(replay_page({run}), std::invalid_argument);
 }
 
 TEST(ReplayPage, LeavesValuesThatAreNotFiniteOut) {

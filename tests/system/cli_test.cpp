@@ -314,6 +314,34 @@ TEST_F(Program, SaysThatAFoldersDriveIsNotRepeated) {
               HasSubstr("differs from the folder's"));
 }
 
+TEST_F(Program, ReplaysAFolderWhoseOtherFilesAreNone) {
+  ASSERT_EQ(vigia(short_run(dir_.path() / "run") + " --no-report").status, 1);
+  for (const char* name : {"run/summary.json", "run/ticks.csv"})
+    fs::resize_file(dir_.path() / name, 2'000'000'000);  // sparse
+  fs::remove(dir_.path() / "run/events.jsonl");
+  const auto result = vigia("report " + (dir_.path() / "run").string());
+  EXPECT_EQ(result.status, 0);
+  EXPECT_THAT(result.err, HasSubstr("summary.json is too large to be one"));
+  EXPECT_LT(fs::file_size(dir_.path() / "run/report.html"), 1'000'000U);
+}
+
+TEST_F(Program, RefusesToReplayAMissionThatIsNone) {
+  ASSERT_EQ(vigia(short_run(dir_.path() / "run") + " --no-report").status, 1);
+  const fs::path mission = dir_.path() / "run/mission.yaml";
+  const auto expect_refused = [&](const std::string& message) {
+    const auto result = vigia("report " + (dir_.path() / "run").string());
+    EXPECT_EQ(result.status, 2);
+    EXPECT_THAT(result.err, HasSubstr(message));
+    EXPECT_FALSE(fs::exists(dir_.path() / "run/report.html"));
+  };
+  file("run/mission.yaml", "a_key_of_another_version: 3\n" + vigia::testing::read_text(mission));
+  expect_refused("mission.yaml:1:1: unknown key 'a_key_of_another_version'");
+  file("run/mission.yaml", "version: 1\nrobot: {radius_m");
+  expect_refused("mission.yaml:2:");
+  fs::resize_file(mission, 2'000'000'000);
+  expect_refused("mission.yaml: the file is larger than 16 MB");
+}
+
 TEST_F(Program, SaysWhatIsMissingInAFolderThatIsNoRun) {
   const auto result = vigia("report " + dir_.path().string());
   EXPECT_EQ(result.status, 2);

@@ -20,7 +20,8 @@ class ShortCampaign : public ::testing::Test {
  protected:
   using Path = std::filesystem::path;
 
-  static constexpr const char* kResults[] = {"results.csv", "summary.json", "table.md", "arms.png"};
+  static constexpr const char* kResults[] = {"results.csv", "summary.json", "table.md", "arms.png",
+                                             "report.html"};
 
   void write_campaign(int seeds, const std::string& set = "") const {
     std::ofstream(file_) << "version: 1\nname: short\nmission: " << VIGIA_SOURCE_DIR

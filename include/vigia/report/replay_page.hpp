@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -41,6 +42,13 @@ struct ReplayLocalizer {
   std::vector<double> bound_m;  ///< √ of the trace of the bound's position covariance
 };
 
+/// How well each landmark suited a look, as the planner judges it.
+struct ReplaySuitability {
+  std::vector<double> t_s;  ///< ascending
+  /// In [0, 1] at each of t_s; NaN where the landmark could not be looked at.
+  std::vector<std::pair<LandmarkId, std::vector<double>>> landmarks;
+};
+
 struct ReplayEvent {
   double t_s = 0.0;
   std::string kind;
@@ -66,7 +74,8 @@ struct ReplayRun {
   std::vector<double> pan;
   std::vector<double> tilt;
   std::vector<double> zoom_mm;
-  std::vector<std::optional<LandmarkId>> target;  ///< that an attention looks for
+  std::vector<std::optional<LandmarkId>> target;  ///< of the present look
+  ReplaySuitability suitability;                  ///< at times of its own; may be empty
   std::vector<ReplayLocalizer> localizers;
   std::vector<ReplayCamera> cameras;
   std::vector<ReplayEvent> events;

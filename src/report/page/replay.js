@@ -1,8 +1,7 @@
 "use strict";
 (() => {
-  const data = JSON.parse(document.getElementById("replay").textContent);
+  const { $, element, readColours, data } = vigia;
   const runs = data.runs;
-  const $ = (id) => document.getElementById(id);
   const end = Math.max(...runs.map((run) => run.t[run.t.length - 1] || 0));
 
   // ---- what there is to draw -------------------------------------------------------------------
@@ -20,26 +19,8 @@
     });
   });
   let colours = {};
-  const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-  function readColours() {
-    colours = {};
-    for (const name of ["paper", "ink", "muted", "rule", "wall", "solid", "floor", "truth", "planned",
-                        "accent", "mark", "view", "field", "line", "c0", "c1", "c2", "c3", "c4", "c5"])
-      colours[name] = css("--" + name);
-  }
   const trackColour = (track) => colours["c" + (track.index % 6)];
   const trackDash = (track) => dashes[Math.floor(track.index / 6 + track.index) % dashes.length];
-
-  function element(tag, attributes, ...children) {
-    const made = document.createElement(tag);
-    for (const [key, value] of Object.entries(attributes || {})) {
-      if (key.startsWith("on")) made.addEventListener(key.slice(2), value);
-      else if (key === "class") made.className = value;
-      else made.setAttribute(key, value);
-    }
-    for (const child of children) made.append(child);
-    return made;
-  }
 
   /// Index of the last of ascending stamps that is not after t; -1 before the first.
   function indexAt(stamps, t) {
@@ -51,6 +32,10 @@
     return low;
   }
   const tickAt = (run, t) => Math.max(0, indexAt(run.t, t));
+  /// The ticks before which the robot was put elsewhere.
+  for (const run of runs)
+    run.jumps = new Set(run.events.filter((event) => event.kind === "kidnapped").map((event) => tickAt(run, event.t) + 1)
+      .filter((i) => i < run.t.length));
   const centimetres = (m) => (100 * m).toFixed(m < 0.1 ? 2 : 1);
 
   // ---- time ------------------------------------------------------------------------------------
@@ -124,15 +109,28 @@
     points.forEach((p, i) => i ? to.lineTo(toX(p[0]), toY(p[1])) : to.moveTo(toX(p[0]), toY(p[1])));
     if (close) to.closePath();
   }
-  function curve(to, xs, ys, from, until) {
+  /// A line that leaves out the steps for which cut(i) says that nothing was driven between i - 1 and i.
+  function curve(to, xs, ys, until, cut) {
     to.beginPath();
-    for (let i = from; i <= until; ++i) {
+    for (let i = 0; i <= until; ++i) {
       const x = toX(xs[i]), y = toY(ys[i]);
-      // A jump of more than half a metre between two ticks is no motion of the robot.
-      if (i === from || Math.hypot(xs[i] - xs[i - 1], ys[i] - ys[i - 1]) > 0.5) to.moveTo(x, y);
+      if (i === 0 || cut(i)) to.moveTo(x, y);
       else to.lineTo(x, y);
     }
     to.stroke();
+  }
+  /// The true path, dashed where the robot was put elsewhere.
+  function drawTruth(to, run, until) {
+    const { x, y } = run.truth;
+    curve(to, x, y, until, (i) => run.jumps.has(i));
+    to.strokeStyle = colours.mark;
+    to.setLineDash([3, 5]);
+    for (const i of run.jumps) {
+      if (i > until) continue;
+      polygon(to, [[x[i - 1], y[i - 1]], [x[i], y[i]]], false);
+      to.stroke();
+    }
+    to.setLineDash([]);
   }
   function drawField(to, field) {
     to.fillStyle = colours.field;
@@ -240,7 +238,7 @@
         to.strokeStyle = colours.truth;
         to.globalAlpha = 0.35;
         to.lineWidth = 1.5;
-        curve(to, run.truth.x, run.truth.y, 0, run.t.length - 1);
+        drawTruth(to, run, run.t.length - 1);
         to.globalAlpha = 1;
       }
       for (const event of run.events) drawEvent(to, run, event);
@@ -249,9 +247,9 @@
     drawScale(to);
     drawMoment();
   }
-  const grave = new Set(["lost", "kidnapped", "collided", "stuck", "still_lost", "timeout", "target_lost", "blocked"]);
+  const grave = new Set(["lost", "ambiguous", "kidnapped", "collided", "stuck", "still_lost", "timeout", "target_lost", "blocked"]);
   function drawEvent(to, run, event) {
-    const sign = { lost: "?", recovered: "✓", kidnapped: "⇝", collided: "✕", stuck: "✕", still_lost: "✕", stop: "■" }[event.kind];
+    const sign = { lost: "?", ambiguous: "≈", recovered: "✓", settled: "✓", kidnapped: "⇝", collided: "✕", stuck: "✕", still_lost: "✕", timeout: "✕", stop: "■" }[event.kind];
     if (!sign) return;
     const i = tickAt(run, event.t);
     to.fillStyle = grave.has(event.kind) ? colours.mark : colours.muted;
@@ -318,7 +316,9 @@
     pen.strokeStyle = trackColour(track);
     pen.lineWidth = 2;
     pen.setLineDash(trackDash(track));
-    curve(pen, localizer.x, localizer.y, 0, i);
+    // Half a metre between two ticks is an estimate that was set anew.
+    curve(pen, localizer.x, localizer.y, i,
+          (k) => Math.hypot(localizer.x[k] - localizer.x[k - 1], localizer.y[k] - localizer.y[k - 1]) > 0.5);
     pen.setLineDash([]);
     if (layers.ellipses) {
       ellipse(x, y, localizer.vx[i], localizer.vy[i], localizer.cxy[i]);
@@ -361,7 +361,7 @@
       if (layers.truth) {
         pen.strokeStyle = colours.truth;
         pen.lineWidth = 2.5;
-        curve(pen, run.truth.x, run.truth.y, 0, i);
+        drawTruth(pen, run, i);
       }
       drawRobot(run, i);
     }
@@ -577,7 +577,7 @@
     to.save();
     shade(spansOf(runs[0], ["look"], ["released", "dropped", "expired", "target_lost"]), colours.accent, 0.08);
     shade(spansOf(runs[0], ["stop"], ["restart"]), colours.muted, 0.25);
-    shade(spansOf(runs[0], ["lost"], ["recovered"]), colours.mark, 0.18);
+    shade(spansOf(runs[0], ["lost", "ambiguous"], ["recovered", "settled"]), colours.mark, 0.18);
     to.restore();
   }
   function drawCursor(plot) {
@@ -601,15 +601,15 @@
     const make = () => {
       const axis = { stroke: colours.muted, grid: { stroke: colours.rule, width: 1 }, ticks: { stroke: colours.rule, width: 1 } };
       return new uPlot({
-        width: Math.max(240, holder.clientWidth), height: 170,
+        width: Math.max(240, holder.clientWidth), height: options && options.height || 170,
         cursor: { sync: { key: "vigia" }, drag: { x: true, y: false } },
         scales: { x: { time: false }, y: Object.assign({ range: options && options.range }, {}) },
-        axes: [{ ...axis, values: (u, splits) => splits.map((s) => s + " s") }, { ...axis, size: 58 }],
+        axes: [{ ...axis, values: (u, splits) => splits.map((s) => s + " s") }, { ...axis, size: 58, ...(options && options.axis) }],
         series: [{ label: "t", value: (u, v) => v === null ? "–" : v.toFixed(2) + " s" }, ...series.map((s) => ({
-          label: s.label, stroke: () => colours[s.colour], width: s.width || 1.6, dash: s.dash, spanGaps: true, points: { show: false },
-          fill: s.fill ? () => colours.view : undefined, value: (u, v) => v === null || v === undefined ? "–" : v.toPrecision(3) + " " + unit,
+          label: s.label, stroke: () => colours[s.colour], width: s.width || 1.6, dash: s.dash, spanGaps: !s.gaps, points: { show: false },
+          fill: s.fill ? () => colours.view : undefined, value: s.value || ((u, v) => v === null || v === undefined ? "–" : v.toPrecision(3) + " " + unit),
         }))],
-        hooks: { drawAxes: [shadeSpans], draw: [drawCursor] },
+        hooks: { drawAxes: [options && options.paint || shadeSpans], draw: [drawCursor] },
       }, joined, holder);
     };
     const entry = { plot: null };
@@ -631,6 +631,45 @@
     if (!playing) plots.forEach((p) => p.plot.redraw(false));
     else if (entry) entry.plot.redraw(false);
   });
+  /// A row for each landmark, darker where it suits better, and a line at the landmark of the look.
+  function suitabilityChart(run, suffix) {
+    const { t, landmarks } = run.suitability;
+    if (!landmarks.length) return;
+    const rows = landmarks.slice(0, 40), count = rows.length, row = new Map(rows.map((mark, k) => [mark.id, count - k]));
+    // What stays the same for some time is one rectangle.
+    const levels = 12, spans = [];
+    rows.forEach((mark, k) => {
+      let from = 0;
+      const level = (i) => i >= t.length || mark.values[i] === null ? -1 : Math.round(levels * mark.values[i]);
+      for (let i = 1; i <= t.length; ++i) {
+        if (i < t.length && level(i) === level(from)) continue;
+        if (level(from) >= 0) spans.push([t[from], i < t.length ? t[i] : end, count - k, level(from) / levels]);
+        from = i;
+      }
+    });
+    const paint = (plot) => {
+      const to = plot.ctx, { left, top, width, height } = plot.bbox;
+      to.save();
+      to.beginPath();
+      to.rect(left, top, width, height);
+      to.clip();
+      to.fillStyle = colours.accent;
+      const thick = 0.84 * height / count;
+      for (const [from, until, at, value] of spans) {
+        const x = plot.valToPos(from, "x", true);
+        to.globalAlpha = 0.06 + 0.84 * value;
+        to.fillRect(x, plot.valToPos(at, "y", true) - thick / 2, plot.valToPos(until, "x", true) - x, thick);
+      }
+      to.restore();
+    };
+    const judged = (time, id) => { const mark = rows.find((one) => one.id === id), i = indexAt(t, time); return mark && i >= 0 ? mark.values[i] : null; };
+    const watched = run.target.map((id) => row.has(id) ? row.get(id) : null);
+    chart("Suitability of each landmark" + suffix, "by the planner’s fuzzy rules, from where the robot believed to be: the darker the better, blank where it could not be looked at; line: the landmark of the look",
+          "", [{ label: "look at", t: run.t, values: watched, colour: "mark", width: 3, gaps: true,
+                 value: (u, v, s, i) => { if (v === null || v === undefined) return "–"; const id = rows[count - v].id, fit = judged(u.data[0][i], id); return `L${id}` + (fit === null ? "" : `, ${fit.toFixed(2)}`); } }],
+          { range: () => [0.4, count + 0.6], paint, height: Math.max(170, 70 + 15 * count),
+            axis: { splits: () => rows.map((mark, k) => count - k), values: (u, splits) => splits.map((s) => "L" + rows[count - s].id), grid: { show: false } } });
+  }
   const toDegrees = (values) => values.map((v) => v === null ? null : v * 180 / Math.PI);
   function makeCharts() {
     const colour = (track) => "c" + (track.index % 6);
@@ -658,6 +697,7 @@
           { range: () => [0, 1] });
     runs.forEach((run, r) => {
       const suffix = runs.length > 1 ? ` #${r + 1}` : "";
+      suitabilityChart(run, suffix);
       if (run.zoom.length)
         chart("Zoom" + suffix, "", "mm", [{ label: "zoom", t: run.t, values: run.zoom, colour: "c0" }], {});
       if (run.pan.length)
@@ -670,8 +710,6 @@
   // ---- the page --------------------------------------------------------------------------------
 
   function makeHeader() {
-    $("title").textContent = data.title;
-    $("subtitle").textContent = data.subtitle;
     const footer = $("footer");
     for (const run of runs) {
       const number = runs.length > 1 ? `#${runs.indexOf(run) + 1} ` : "";
@@ -680,7 +718,8 @@
       if (run.note) footer.append(element("p", {}, run.note));
     }
     footer.append(element("p", {}, "Keys: space play · ← → a second · , . a tick · [ ] events · Home End · + − 0 map · f follow. "
-      + "Click a timeline or an event to go there; drag over a timeline to enlarge it, double-click for all of it. Ellipses hold 95 %."));
+      + "On the map: ⇝ kidnapped, ? lost, ≈ ambiguous, ✓ recovered or settled, ✕ the end of a drive that did not arrive, ■ stop; "
+      + "a dashed line of that colour was not driven. Click a timeline or an event to go there; drag over a timeline to enlarge it, double-click for all of it. Ellipses hold 95 %."));
   }
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.altKey || event.metaKey) return;
@@ -711,12 +750,12 @@
   $("scrub").addEventListener("input", () => { play(false); show(parseFloat($("scrub").value)); });
   window.addEventListener("hashchange", readAddress);
   let resizing = 0;
-  const layOut = () => { readColours(); showAll(); plots.forEach((p) => p.again()); };
+  const layOut = () => { colours = readColours(); showAll(); plots.forEach((p) => p.again()); };
   window.addEventListener("resize", () => { clearTimeout(resizing); resizing = setTimeout(layOut, 120); });
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", layOut);
   window.addEventListener("beforeprint", layOut);
 
-  readColours();
+  colours = readColours();
   makeHeader();
   makeLayers();
   makeCameras();
@@ -727,5 +766,5 @@
   showAll();
   show(0, true);
   readAddress();
-  document.documentElement.dataset.ready = "yes";
+  vigia.ready();
 })();
