@@ -14,6 +14,7 @@
 #include <Eigen/SVD>
 
 #include "vigia/core/angle.hpp"
+#include "vigia/core/plane_geometry.hpp"
 
 namespace vigia::sim {
 namespace {
@@ -49,6 +50,19 @@ bool may_be_seen(const Intrinsics& k, const Eigen::Vector3d& centre_c, double ra
   return in_image(k, *uv, -reach);
 }
 
+constexpr int kMaxSamples = 32;
+
+/// kMaxSamples points once round.
+const std::vector<Eigen::Vector2d>& unit_circle() {
+  static const std::vector<Eigen::Vector2d> points = [] {
+    std::vector<Eigen::Vector2d> all;
+    all.reserve(kMaxSamples);
+    for (int i = 0; i < kMaxSamples; ++i) all.push_back(unit_vector(2.0 * kPi * i / kMaxSamples));
+    return all;
+  }();
+  return points;
+}
+
 /// Whole pixels round the image of the circle of radius @p radius, or an empty window. Only a
 /// mirror shows what it shows in part.
 Window outline_box(const Eigen::Isometry3d& cMd, double radius, const CameraModel& model,
@@ -57,10 +71,11 @@ Window outline_box(const Eigen::Isometry3d& cMd, double radius, const CameraMode
   double v0 = 1e9;
   double u1 = -1e9;
   double v1 = -1e9;
+  const std::vector<Eigen::Vector2d>& circle = unit_circle();
+  const int step = static_cast<int>(circle.size()) / samples;
   for (int i = 0; i < samples; ++i) {
-    const double angle = 2.0 * kPi * i / samples;
-    const auto uv = project(
-        model, cMd * Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), 0.0));
+    const Eigen::Vector2d& at = circle[static_cast<std::size_t>(i * step)];
+    const auto uv = project(model, cMd * Eigen::Vector3d(radius * at.x(), radius * at.y(), 0.0));
     if (!uv && is_perspective(model)) return {};
     if (!uv) continue;
     u0 = std::min(u0, uv->x());
@@ -248,13 +263,23 @@ DecalView::DecalView(const Decal& decal, const Eigen::Isometry3d& cMw, const Cam
 
   const Window frame{0, 0, image_width(model), image_height(model)};
   const int margin = decal.blurred ? blur_margin(blur_px) : 1;
-  box_ = intersect(grown(outline_box(cMd, radius, model, decal.blurred ? 32 : 8), margin), frame);
+  box_ = intersect(
+      grown(outline_box(cMd, radius, model, decal.blurred ? kMaxSamples : kMaxSamples / 4), margin),
+      frame);
   if (box_.empty()) return;
 
   Eigen::Matrix3d cHd;
   cHd << decal.size_m * cMd.linear().col(0), decal.size_m * cMd.linear().col(1), centre_c;
   dHray_ = cHd.inverse();
   dxy_duv_ = std::visit([&](const auto& m) { return centre_scale(m, dHray_, centre_c); }, model);
+}
+
+void DecalView::expect(const Window& window) {
+  const Window asked = intersect(window, box_);
+  if (!decal_->blurred || asked.empty() || contains(expected_, asked)) return;
+  // Whoever asks again may go on asking.
+  expected_ = expected_.empty() ? asked : box_;
+  blurred_.clear();
 }
 
 void DecalView::coverage(int u, int v, int count, const Rays& rays, float* out) {
@@ -267,12 +292,13 @@ void DecalView::coverage(int u, int v, int count, const Rays& rays, float* out) 
   }
   if (blurred_.empty()) compute_blurred();
   const int margin = blur_margin(blur_px_);
-  const std::ptrdiff_t stride = box_.width + 2 * margin;
-  std::copy_n(blurred_.data() + (v - box_.v + margin) * stride + (u - box_.u + margin), count, out);
+  const std::ptrdiff_t stride = expected_.width + 2 * margin;
+  const float* row = blurred_.data() + (v - expected_.v + margin) * stride;
+  std::copy_n(row + (u - expected_.u + margin), count, out);
 }
 
 void DecalView::compute_blurred() {
-  const Window window = grown(box_, blur_margin(blur_px_));
+  const Window window = grown(expected_, blur_margin(blur_px_));
   if (decal_->shape == DecalShape::disc) {
     // 1 − x² − y² ≥ 0 in the decal's plane.
     const Eigen::Vector3d unit(-1.0, -1.0, 1.0);
@@ -284,9 +310,30 @@ void DecalView::compute_blurred() {
   } else if (decal_->shape == DecalShape::tag) {
     blurred_ = tag_coverage(decal_->fields, dHray_, *model_, window);
   } else {
+    if (within_square(window)) {
+      blurred_.assign(static_cast<std::size_t>(window.width * window.height),
+                      blurred_one(blur_px_));
+      return;
+    }
     blurred_ = square_coverage(window);
   }
   blur(blurred_, window, blur_px_);
+}
+
+/// Whether all of the window lies well inside the square. A lens bends the square's sides by less
+/// than the clearance.
+bool DecalView::within_square(const Window& window) const {
+  constexpr double kClearance_px = 3.0;
+  if (!is_perspective(*model_)) return false;
+  const double limit_x = 1.0 - kClearance_px * dxy_duv_.row(0).norm();
+  const double limit_y = 1.0 - kClearance_px * dxy_duv_.row(1).norm();
+  for (const int u : {window.u, window.right() - 1}) {
+    for (const int v : {window.v, window.bottom() - 1}) {
+      const Eigen::Vector3d at = dHray_ * point_ray(*model_, {u, v});
+      if (std::abs(at.x()) > limit_x * at.z() || std::abs(at.y()) > limit_y * at.z()) return false;
+    }
+  }
+  return true;
 }
 
 std::vector<float> DecalView::square_coverage(const Window& window) const {

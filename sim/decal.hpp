@@ -39,12 +39,17 @@ class DecalView {
   const imaging::Window& box() const { return box_; }
   const Decal& decal() const { return *decal_; }
 
-  /// Coverage of @p count pixels of row @p v from @p u on, which lie in the box. Landmarks are
-  /// computed as a whole the first time, so that a pixel never depends on the window.
+  /// Coverage of pixels of @p window will be asked for.
+  void expect(const imaging::Window& window);
+
+  /// Coverage of @p count pixels of row @p v from @p u on, which lie in the box and in an expected
+  /// window. Landmarks are computed together for what was expected; a pixel's coverage does not
+  /// depend on that.
   void coverage(int u, int v, int count, const Rays& rays, float* out);
 
  private:
   void compute_blurred();
+  bool within_square(const imaging::Window& window) const;
   std::vector<float> square_coverage(const imaging::Window& window) const;
 
   const Decal* decal_;
@@ -53,7 +58,8 @@ class DecalView {
   imaging::Window box_;
   Eigen::Matrix3d dHray_ = Eigen::Matrix3d::Identity();    ///< ray → decal, size_m = 1
   Eigen::Matrix2d dxy_duv_ = Eigen::Matrix2d::Identity();  ///< at the decal's centre
-  std::vector<float> blurred_;
+  imaging::Window expected_;                               ///< of the box
+  std::vector<float> blurred_;  ///< of what is expected and blur_margin() round it; or nothing yet
 };
 
 }  // namespace vigia::sim

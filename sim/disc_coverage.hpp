@@ -22,5 +22,7 @@ std::vector<float> conic_coverage(const Eigen::Matrix3d& Q, const Eigen::Vector3
 /// window's edge is not valid.
 void blur(std::vector<float>& image, const imaging::Window& window, double sigma);
 int blur_margin(double sigma);
+/// What blur() makes of an image of ones, all of it 1 but for rounding.
+float blurred_one(double sigma);
 
 }  // namespace vigia::sim

@@ -40,7 +40,11 @@ std::array<float, kTableSize> normal_table() {
   return table;
 }
 
-const std::array<float, kTableSize> kNormal = normal_table();
+/// Made when the first picture is: many a run of the program makes none.
+const float* normal_numbers() {
+  static const std::array<float, kTableSize> table = normal_table();
+  return table.data();
+}
 
 VIGIA_PIXEL_BODY unsigned char noisy_pixel(float value, const float* table, float sigma,
                                            std::uint32_t row_key, std::uint32_t u) {
@@ -90,8 +94,8 @@ std::uint32_t PixelNoise::row_key(int channel, int v) const {
 
 void PixelNoise::add_and_round(const float* value, float sigma, int u, int v, int channel,
                                int count, unsigned char* out) const {
-  noisy_row(value, kNormal.data(), sigma, row_key(channel, v), static_cast<std::uint32_t>(u), count,
-            out);
+  noisy_row(value, normal_numbers(), sigma, row_key(channel, v), static_cast<std::uint32_t>(u),
+            count, out);
 }
 
 std::vector<std::uint32_t> PixelNoise::row_keys(int channel, int rows) const {
@@ -104,7 +108,7 @@ std::vector<std::uint32_t> PixelNoise::row_keys(int channel, int rows) const {
 void PixelNoise::add_and_round(const float* value, float sigma, const std::uint32_t* row_keys,
                                const std::int32_t* u, const std::int32_t* v, int count,
                                unsigned char* out) {
-  noisy_pixels(value, kNormal.data(), sigma, row_keys, u, v, count, out);
+  noisy_pixels(value, normal_numbers(), sigma, row_keys, u, v, count, out);
 }
 
 }  // namespace vigia::sim

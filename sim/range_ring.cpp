@@ -28,13 +28,11 @@ std::optional<double> circle_in_sector(const Sector& sector, const Vector2d& cen
   return nearest;
 }
 
-}  // namespace
-
-std::optional<double> nearest_in_cone(const FloorPlan& plan, const std::vector<Pillar>& pillars,
-                                      const Eigen::Vector2d& p, double direction, double cone,
-                                      double reach_m, double above_m) {
-  const Sector sector = Sector::about(direction, 0.5 * cone);
-  std::optional<double> nearest = nearest_face(plan, p, sector, reach_m, above_m);
+/// nearest_in_cone() of faces near @p p.
+std::optional<double> nearest_in_sector(const NearFaces& faces, const std::vector<Pillar>& pillars,
+                                        const Vector2d& p, const Sector& sector, double reach_m,
+                                        double above_m) {
+  std::optional<double> nearest = faces.nearest_in(sector);
   for (const Pillar& pillar : pillars) {
     if (pillar.height_m <= above_m) continue;
     const auto distance = circle_in_sector(sector, pillar.centre - p, pillar.radius_m);
@@ -43,18 +41,34 @@ std::optional<double> nearest_in_cone(const FloorPlan& plan, const std::vector<P
   return nearest;
 }
 
+}  // namespace
+
+std::optional<double> nearest_in_cone(const FloorPlan& plan, const std::vector<Pillar>& pillars,
+                                      const Eigen::Vector2d& p, double direction, double cone,
+                                      double reach_m, double above_m) {
+  return nearest_in_sector(NearFaces(plan, p, reach_m, above_m), pillars, p,
+                           Sector::about(direction, 0.5 * cone), reach_m, above_m);
+}
+
 RangeRing::RangeRing(const RangeRingParams& params, std::uint64_t seed)
-    : params_(params), random_(seed, "range ring") {}
+    : params_(params), random_(seed, "range ring") {
+  for (int i = 0; i < params_.beams; ++i) {
+    const double bearing = wrap_angle(2.0 * kPi * i / params_.beams);
+    bearings_.push_back(bearing);
+    beams_.push_back(Sector::about(bearing, 0.5 * params_.cone));
+  }
+}
 
 RangeScan RangeRing::scan(Stamp stamp, const Pose2& pose, const FloorPlan& plan,
                           const std::vector<Pillar>& pillars) {
   RangeScan scan{stamp, params_.reach_m, {}};
   scan.readings.reserve(static_cast<std::size_t>(params_.beams));
-  for (int i = 0; i < params_.beams; ++i) {
-    RangeReading reading{wrap_angle(2.0 * kPi * i / params_.beams), params_.reach_m, false};
-    const auto nearest =
-        nearest_in_cone(plan, pillars, pose.position(), pose.theta + reading.bearing, params_.cone,
-                        params_.reach_m, params_.height_m);
+  const NearFaces faces(plan, pose.position(), params_.reach_m, params_.height_m);
+  const Eigen::Vector2d ahead = unit_vector(pose.theta);
+  for (std::size_t i = 0; i < beams_.size(); ++i) {
+    RangeReading reading{bearings_[i], params_.reach_m, false};
+    const auto nearest = nearest_in_sector(faces, pillars, pose.position(), beams_[i].turned(ahead),
+                                           params_.reach_m, params_.height_m);
     const bool dropped = random_.uniform(0.0, 1.0) < params_.dropout;
     const double error = random_.normal();
     if (nearest && !dropped) {

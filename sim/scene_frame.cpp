@@ -14,6 +14,12 @@ int longest(const std::vector<Run>& runs) {
   return longest_run;
 }
 
+Window bounds_of(const std::vector<Run>& runs) {
+  Window bounds;
+  for (const Run& run : runs) bounds = unite(bounds, {run.u_begin, run.v, run.width(), 1});
+  return bounds;
+}
+
 /// Pixels of the largest batch: of a row or of a tile.
 std::size_t room_for(int width) {
   return static_cast<std::size_t>(std::max(width, kTile * kTile));
@@ -48,6 +54,7 @@ void SceneFrame::for_each_tile(const TileBatches& batches, const Use& use) const
 template <typename Use>
 void SceneFrame::for_each_batch(const Window& window, std::ptrdiff_t stride, const Use& use) const {
   if (window.empty()) return;
+  view().expect(window);
   if (!is_perspective(model_)) {
     for_each_tile(TileBatches(window, stride, width()), use);
     return;
@@ -62,6 +69,7 @@ void SceneFrame::for_each_batch(const Window& window, std::ptrdiff_t stride, con
 
 template <typename Use>
 void SceneFrame::for_each_batch(const std::vector<Run>& runs, const Use& use) const {
+  view().expect(bounds_of(runs));
   if (!is_perspective(model_)) {
     for_each_tile(TileBatches(runs, width()), use);
     return;

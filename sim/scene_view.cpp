@@ -106,6 +106,10 @@ void SceneView::find_marks(const Eigen::Isometry3d& cMw) {
   }
 }
 
+void SceneView::expect(const Window& window) {
+  for (DecalView& view : decals_) view.expect(window);
+}
+
 void SceneView::see(PixelRow& row) {
   see_surfaces(row);
   see_solids(row);

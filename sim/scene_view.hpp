@@ -27,6 +27,8 @@ class SceneView {
             const ImagingParams& params);
 
   PixelRow row_of(int most) const;
+  /// Pixels of @p window will be asked for; must come before them.
+  void expect(const imaging::Window& window);
   /// Finds what the pixels that @p row has taken show: rays, winner, depth, and the grey of
   /// surfaces and solids.
   void see(PixelRow& row);

@@ -25,6 +25,9 @@ using imaging::Window;
 constexpr int kWidenings = 4;
 constexpr double kEdgeBand = 3.0;  // px round an outline that its fit needs
 constexpr double kVisible = 1.5;   // contrast to noise at which something is there at all
+constexpr double kExpected = 3.5;  // px that a disc which moves as expected stays within
+constexpr double kMoving = 1.5;    // px by which a band strays while it is fitted
+constexpr double kHollow = 3.0;    // widths of the band from which on it pays to leave out the hole
 
 double log_size_ratio(const EllipseShape& a, const EllipseShape& b) {
   return std::log(size_of(a) / size_of(b));
@@ -33,6 +36,25 @@ double log_size_ratio(const EllipseShape& a, const EllipseShape& b) {
 bool touches(const Window& inner, const Window& outer) {
   return inner.u <= outer.u || inner.v <= outer.v || inner.right() >= outer.right() ||
          inner.bottom() >= outer.bottom();
+}
+
+// Where the row through the centre leaves the ellipse.
+double right_end(const EllipseShape& shape) {
+  const double off = shape.sigma(0, 1);
+  return shape.centre.x() + std::sqrt(shape.sigma(0, 0) - off * off / shape.sigma(1, 1));
+}
+
+std::vector<imaging::Run> runs_of(const std::vector<BandRow>& band) {
+  std::vector<imaging::Run> runs;
+  runs.reserve(2 * band.size());
+  const auto add = [&](int v, int first, int last) {
+    if (first <= last) runs.push_back({v, first, last + 1});
+  };
+  for (const BandRow& row : band) {
+    add(row.v, row.first, std::min(row.last, row.hole_first - 1));
+    add(row.v, std::max(row.first, row.hole_last + 1), row.last);
+  }
+  return runs;
 }
 
 // Whether the ellipse's outline reaches over the frame's edge.
@@ -64,14 +86,20 @@ class DiscTracker::State {
     double log_size_sigma;
   };
 
+  std::optional<EllipseFeature> follow_band(Canvas& canvas, const EllipseShape& predicted,
+                                            const Window& window);
+  std::optional<EdgeFit> follow(const vpImage<unsigned char>& image, const EllipseShape& predicted,
+                                const Eigen::Vector2d& seed, const Window& window);
   std::optional<EllipseShape> follow_dot(const vpImage<unsigned char>& image,
-                                         const EllipseShape& predicted, const Window& window);
+                                         const EllipseShape& predicted, const Eigen::Vector2d& seed,
+                                         const Window& window);
   EllipseFeature search(Canvas& canvas, const Gate& gate, double margin);
   FeatureStatus blame(const std::vector<DiscCandidate>& candidates, const Gate& gate,
                       const vpImage<unsigned char>& image, const Window& window,
                       const Window& frame);
   double distance(const EllipseShape& shape, const Gate& gate) const;
   double margin_of(const EllipseShape& shape) const;
+  double band_half_width(double blur) const;
   void keep(const EdgeFit& fit);
 
   DiscTrackerParameters parameters_;
@@ -95,6 +123,10 @@ void DiscTracker::State::keep(const EdgeFit& fit) {
 double DiscTracker::State::margin_of(const EllipseShape& shape) const {
   return std::max(parameters_.search_margin_px,
                   parameters_.search_margin_ratio * half_extent(shape).maxCoeff());
+}
+
+double DiscTracker::State::band_half_width(double blur) const {
+  return edge_fit_parameters(parameters_).band_blurs * blur;
 }
 
 // Squared distance from the prediction in gate units; at most 1 inside the gate.
@@ -192,15 +224,15 @@ EllipseFeature DiscTracker::State::acquire(Canvas& canvas, const EllipsePredicti
 
 std::optional<EllipseShape> DiscTracker::State::follow_dot(const vpImage<unsigned char>& image,
                                                            const EllipseShape& predicted,
+                                                           const Eigen::Vector2d& seed,
                                                            const Window& window) {
   const Window seedable{window.u + 2, window.v + 2, window.width - 4, window.height - 4};
-  const Window seed{static_cast<int>(std::lround(predicted.centre.x())),
-                    static_cast<int>(std::lround(predicted.centre.y())), 1, 1};
-  if (!contains(seedable, seed)) return std::nullopt;
+  const Window at{static_cast<int>(std::lround(seed.x())), static_cast<int>(std::lround(seed.y())),
+                  1, 1};
+  if (!contains(seedable, at)) return std::nullopt;
   const int middle = static_cast<int>(0.5 * (profile_.disc + profile_.ground));
   const bool dark = profile_.disc < profile_.ground;
-  const auto dot = dark ? dot_.track(image, predicted.centre, 0, middle)
-                        : dot_.track(image, predicted.centre, middle, 255);
+  const auto dot = dark ? dot_.track(image, seed, 0, middle) : dot_.track(image, seed, middle, 255);
   if (!dot) return std::nullopt;
   const vpRect box = dot_.getBBox();
   const Window dot_window{static_cast<int>(box.getLeft()), static_cast<int>(box.getTop()),
@@ -215,6 +247,49 @@ std::optional<EllipseShape> DiscTracker::State::follow_dot(const vpImage<unsigne
   return EllipseShape{dot->centre, predicted.sigma * growth};
 }
 
+// What vpDot2, from the seed, and the fit find in the window; nothing where they are not sure of
+// it.
+std::optional<EdgeFit> DiscTracker::State::follow(const vpImage<unsigned char>& image,
+                                                  const EllipseShape& predicted,
+                                                  const Eigen::Vector2d& seed,
+                                                  const Window& window) {
+  const auto dot = follow_dot(image, predicted, seed, window);
+  if (!dot) return std::nullopt;
+  EdgeFit fit = fitter_.fit(image, window, *dot, profile_);
+  const bool near = (fit.shape.centre - dot->centre).norm() < 0.5 + 0.05 * size_of(*dot) &&
+                    std::abs(log_size_ratio(fit.shape, predicted)) < parameters_.max_scale_step;
+  if (!near || !fit.complete || judge_fit(fit, parameters_) != FeatureStatus::found)
+    return std::nullopt;
+  return fit;
+}
+
+// follow() with no pixels but those round the outline of a disc that moves as expected: what is
+// farther out, and the inside of a large disc, nobody reads. Nothing where the outline leaves them.
+std::optional<EllipseFeature> DiscTracker::State::follow_band(Canvas& canvas,
+                                                              const EllipseShape& predicted,
+                                                              const Window& window) {
+  if (parameters_.robust) return std::nullopt;  // looks beside the outline
+  const double half_width = band_half_width(profile_.blur) + kExpected;
+  const Window whole = window_round(predicted, half_width);
+  if (!contains(window, whole)) return std::nullopt;
+  const double axis = ellipse_of(predicted).b;
+  const bool hollow = axis > kHollow * half_width;
+  if (hollow)
+    canvas.require(runs_of(band_rows(predicted, half_width)));
+  else
+    canvas.require(whole);
+  // vpDot2 goes to the right from its seed, to the border.
+  const Eigen::Vector2d seed(hollow ? right_end(predicted) - kExpected : predicted.centre.x(),
+                             predicted.centre.y());
+  const auto fit = follow(canvas.image(), predicted, seed, whole);
+  if (!fit) return std::nullopt;
+  const double moved = (fit->shape.centre - predicted.centre).norm() +
+                       0.5 * (fit->shape.sigma - predicted.sigma).norm() / axis;
+  if (moved + band_half_width(fit->profile.blur) > half_width - kMoving) return std::nullopt;
+  keep(*fit);
+  return feature_of(*fit, FeatureStatus::found);
+}
+
 EllipseFeature DiscTracker::State::track(Canvas& canvas) {
   if (!tracking_) return lost_ellipse(FeatureStatus::not_found);
   EllipseShape predicted = shape_;
@@ -223,17 +298,12 @@ EllipseFeature DiscTracker::State::track(Canvas& canvas) {
   const double margin = margin_of(predicted);
   const Window window = intersect(window_round(predicted, margin), frame);
   if (window.empty()) return lost_ellipse(FeatureStatus::not_found);
+  if (const auto feature = follow_band(canvas, predicted, window)) return *feature;
   canvas.require(window);
   if (parameters_.robust) fitter_.set_noise(noise_level(canvas.image(), window));
-
-  if (const auto dot = follow_dot(canvas.image(), predicted, window)) {
-    const EdgeFit fit = fitter_.fit(canvas.image(), window, *dot, profile_);
-    const bool near = (fit.shape.centre - dot->centre).norm() < 0.5 + 0.05 * size_of(*dot) &&
-                      std::abs(log_size_ratio(fit.shape, predicted)) < parameters_.max_scale_step;
-    if (near && fit.complete && judge_fit(fit, parameters_) == FeatureStatus::found) {
-      keep(fit);
-      return feature_of(fit, FeatureStatus::found);
-    }
+  if (const auto fit = follow(canvas.image(), predicted, predicted.centre, window)) {
+    keep(*fit);
+    return feature_of(*fit, FeatureStatus::found);
   }
   const double reach = margin / parameters_.gate_sigmas;
   const Gate gate{predicted, Eigen::Matrix2d::Identity() * (reach * reach),

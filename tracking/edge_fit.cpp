@@ -18,30 +18,6 @@ constexpr double kMaxBlur = 6.0;
 constexpr double kMinAxis = 1.5;     // px
 constexpr double kLevelRest = 0.05;  // of the contrast: levels that change less are at rest
 
-// Where the row v cuts the ellipse: the half length of the chord and its middle.
-struct Chord {
-  double middle;
-  double half;  // negative: no cut
-};
-
-Chord chord_of(const EllipseShape& shape, double v) {
-  const double dv = v - shape.centre.y();
-  const double p = shape.sigma(0, 0);
-  const double q = shape.sigma(0, 1);
-  const double r = shape.sigma(1, 1);
-  const double inside = 1.0 - dv * dv / r;
-  if (inside < 0.0) return {0.0, -1.0};
-  return {shape.centre.x() + q / r * dv, std::sqrt((p - q * q / r) * inside)};
-}
-
-// The ellipse of the same directions with both axes longer by @p margin (shorter if negative).
-EllipseShape grown(const EllipseShape& shape, double margin) {
-  Ellipse ellipse = ellipse_of(shape);
-  ellipse.a += margin;
-  ellipse.b += margin;
-  return shape_of(ellipse);
-}
-
 bool is_ellipse(const EllipseShape& shape) {
   return shape.sigma.allFinite() && shape.centre.allFinite() && shape.sigma.determinant() > 0.0 &&
          shape.sigma(0, 0) > 0.0 && ellipse_of(shape).b >= kMinAxis;
@@ -108,10 +84,7 @@ void EdgeFitter::collect(const vpImage<unsigned char>& image, const imaging::Win
   band_blur_ = profile_.blur;
   const double half_width = band_half_width();
   const Ellipse ellipse = ellipse_of(shape_);
-  const EllipseShape outer = grown(shape_, half_width);
-  const bool has_hole = ellipse.b > half_width + 0.5;
-  const EllipseShape inner = has_hole ? grown(shape_, -half_width) : shape_;
-
+  const bool has_hole = band_has_hole(ellipse, half_width);
   const double area =
       kPi * ((ellipse.a + half_width) * (ellipse.b + half_width) -
              (has_hole ? (ellipse.a - half_width) * (ellipse.b - half_width) : 0.0));
@@ -121,22 +94,13 @@ void EdgeFitter::collect(const vpImage<unsigned char>& image, const imaging::Win
 
   complete_ = true;
   count_ = 0;
-  const imaging::Window rows = window_round(outer, 0.0);
-  for (int v = rows.v; v < rows.bottom(); ++v) {
-    const Chord whole = chord_of(outer, v);
-    if (whole.half < 0.0) continue;
-    const int first = static_cast<int>(std::ceil(whole.middle - whole.half));
-    const int last = static_cast<int>(std::floor(whole.middle + whole.half));
-    if (last < first) continue;
-    if (v < bounds.v || v >= bounds.bottom() || first < bounds.u || last >= bounds.right())
+  for (const BandRow& band : band_rows(shape_, half_width)) {
+    const int v = band.v;
+    if (v < bounds.v || v >= bounds.bottom() || band.first < bounds.u ||
+        band.last >= bounds.right())
       complete_ = false;
     if (v < bounds.v || v >= bounds.bottom()) continue;
     const unsigned char* row = image[static_cast<unsigned>(v)];
-    const Chord hole = has_hole ? chord_of(inner, v) : Chord{0.0, -1.0};
-    const int hole_first =
-        hole.half < 0.0 ? last + 1 : static_cast<int>(std::ceil(hole.middle - hole.half));
-    const int hole_last =
-        hole.half < 0.0 ? last : static_cast<int>(std::floor(hole.middle + hole.half));
     const auto take = [&](int from, int to) {
       from = std::max(from, bounds.u);
       to = std::min(to, bounds.right() - 1);
@@ -152,8 +116,8 @@ void EdgeFitter::collect(const vpImage<unsigned char>& image, const imaging::Win
         ++count_;
       }
     };
-    take(first, std::min(last, hole_first - 1));
-    take(std::max(first, hole_last + 1), last);
+    take(band.first, std::min(band.last, band.hole_first - 1));
+    take(std::max(band.first, band.hole_last + 1), band.last);
   }
   if (covered_.any()) leave_out_covered();
   const auto greys = grey_.head(count_);

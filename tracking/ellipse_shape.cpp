@@ -11,6 +11,30 @@ namespace {
 // Variance of an angle that is uniform over half a turn.
 const double kUniformAngleVariance = kPi * kPi / 12.0;
 
+// Where the row v cuts the ellipse: the half length of the chord and its middle.
+struct Chord {
+  double middle;
+  double half;  // negative: no cut
+};
+
+Chord chord_of(const EllipseShape& shape, double v) {
+  const double dv = v - shape.centre.y();
+  const double p = shape.sigma(0, 0);
+  const double q = shape.sigma(0, 1);
+  const double r = shape.sigma(1, 1);
+  const double inside = 1.0 - dv * dv / r;
+  if (inside < 0.0) return {0.0, -1.0};
+  return {shape.centre.x() + q / r * dv, std::sqrt((p - q * q / r) * inside)};
+}
+
+// The ellipse of the same directions with both axes longer by @p margin (shorter if negative).
+EllipseShape grown(const EllipseShape& shape, double margin) {
+  Ellipse ellipse = ellipse_of(shape);
+  ellipse.a += margin;
+  ellipse.b += margin;
+  return shape_of(ellipse);
+}
+
 }  // namespace
 
 EllipseShape shape_of(const Ellipse& ellipse) {
@@ -58,6 +82,33 @@ imaging::Window window_round(const EllipseShape& shape, double margin) {
   const int right = static_cast<int>(std::ceil(shape.centre.x() + half.x()));
   const int bottom = static_cast<int>(std::ceil(shape.centre.y() + half.y()));
   return {left, top, right - left + 1, bottom - top + 1};
+}
+
+bool band_has_hole(const Ellipse& ellipse, double half_width) {
+  return ellipse.b > half_width + 0.5;
+}
+
+std::vector<BandRow> band_rows(const EllipseShape& shape, double half_width) {
+  const EllipseShape outer = grown(shape, half_width);
+  const bool has_hole = band_has_hole(ellipse_of(shape), half_width);
+  const EllipseShape inner = has_hole ? grown(shape, -half_width) : shape;
+  const imaging::Window rows = window_round(outer, 0.0);
+  std::vector<BandRow> band;
+  band.reserve(static_cast<std::size_t>(rows.height));
+  for (int v = rows.v; v < rows.bottom(); ++v) {
+    const Chord whole = chord_of(outer, v);
+    if (whole.half < 0.0) continue;
+    const int first = static_cast<int>(std::ceil(whole.middle - whole.half));
+    const int last = static_cast<int>(std::floor(whole.middle + whole.half));
+    if (last < first) continue;
+    const Chord hole = has_hole ? chord_of(inner, v) : Chord{0.0, -1.0};
+    if (hole.half < 0.0)
+      band.push_back({v, first, last + 1, last, last});
+    else
+      band.push_back({v, first, static_cast<int>(std::ceil(hole.middle - hole.half)),
+                      static_cast<int>(std::floor(hole.middle + hole.half)), last});
+  }
+  return band;
 }
 
 EllipseEstimate estimate_of(const EllipseShape& shape,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "vigia/core/observation.hpp"
@@ -29,6 +31,23 @@ Eigen::Vector2d half_extent(const EllipseShape& shape);
 
 /// The whole pixels within the ellipse's upright rectangle grown by @p margin.
 imaging::Window window_round(const EllipseShape& shape, double margin);
+
+/// The pixels of a row in a band round an outline: first to last without those of the hole, which
+/// is empty where hole_last < hole_first.
+struct BandRow {
+  int v = 0;
+  int first = 0;
+  int hole_first = 0;
+  int hole_last = -1;
+  int last = 0;
+};
+
+/// Whether the ellipse that is @p half_width smaller is at least half a pixel.
+bool band_has_hole(const Ellipse& ellipse, double half_width);
+
+/// The band between the ellipses of the same directions whose axes are @p half_width longer and
+/// shorter, by its rows.
+std::vector<BandRow> band_rows(const EllipseShape& shape, double half_width);
 
 /// An ellipse and the covariance of (u, v, a, b, ψ).
 struct EllipseEstimate {

@@ -1,9 +1,12 @@
 #include "commands.hpp"
 #include "usage_mistake.hpp"
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <iostream>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 #include <opencv2/core.hpp>
@@ -16,6 +19,7 @@ namespace {
 
 /// Exit statuses of the program (DESIGN: 0 done, 1 the mission or a check failed, 2 wrong input).
 constexpr int kWrongInput = 2;
+constexpr int kNotWritten = 2;
 constexpr int kBroken = 3;
 
 void log_to_stderr() {
@@ -62,10 +66,20 @@ int run_program(int argc, char** argv) {
   } catch (const vigia::InputError& error) {
     spdlog::error("{}", error.what());
     return kWrongInput;
+  } catch (const std::system_error& error) {
+    spdlog::error("{}", error.what());  // as of an output that takes no more
+    return kNotWritten;
   } catch (const std::exception& error) {
     spdlog::critical("unexpected: {}", error.what());
     return kBroken;
   }
+}
+
+/// What was printed has arrived. A full disk shows when the last of it is written.
+bool output_is_written() {
+  std::cout.flush();
+  const bool streamed = std::cout.good();
+  return std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && streamed;
 }
 
 }  // namespace
@@ -73,7 +87,10 @@ int run_program(int argc, char** argv) {
 int main(int argc, char** argv) {
   take_size_limits_for_errors();
   try {
-    return run_program(argc, argv);
+    const int status = run_program(argc, argv);
+    if (output_is_written()) return status;
+    spdlog::error("standard output has not taken all that was printed; is its disk full?");
+    return std::max(status, kNotWritten);
   } catch (...) {
     std::fputs("vigia: unexpected failure\n", stderr);
     return kBroken;

@@ -1,5 +1,7 @@
 #include "vigia/core/floor_plan.hpp"
 
+#include "face_ray.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -26,7 +28,20 @@ bool on_face(const Wall& face, double fraction) {
   return fraction >= -slack && fraction <= 1.0 + slack;
 }
 
-/// Distance along the ray to a face, or infinity. A face seen edge-on is met at its near end.
+/// Whether a face stands between two points, neither of which lies on it.
+bool hides(const Wall& face, const Eigen::Vector3d& p_w, const Eigen::Vector3d& q_w) {
+  const Eigen::Vector2d p = p_w.head<2>();
+  const Eigen::Vector2d q = q_w.head<2>();
+  const auto crossing = cross_lines(p, q, face.a, face.b);
+  if (!crossing || crossing->along_pq <= 0.0 || crossing->along_pq >= 1.0) return false;
+  if (!on_face(face, crossing->along_ab)) return false;
+  if (p_w.z() + crossing->along_pq * (q_w.z() - p_w.z()) > face.height_m) return false;
+  return distance_to_segment(p, face.a, face.b) > kOnFace &&
+         distance_to_segment(q, face.a, face.b) > kOnFace;
+}
+
+}  // namespace
+
 double ray_distance(const Eigen::Vector2d& origin, const Eigen::Vector2d& direction,
                     const Wall& face) {
   constexpr double kMissed = std::numeric_limits<double>::infinity();
@@ -45,20 +60,6 @@ double ray_distance(const Eigen::Vector2d& origin, const Eigen::Vector2d& direct
       std::minmax({direction.dot(face.a - origin), direction.dot(face.b - origin)});
   return high < 0.0 ? kMissed : std::max(0.0, low);
 }
-
-/// Whether a face stands between two points, neither of which lies on it.
-bool hides(const Wall& face, const Eigen::Vector3d& p_w, const Eigen::Vector3d& q_w) {
-  const Eigen::Vector2d p = p_w.head<2>();
-  const Eigen::Vector2d q = q_w.head<2>();
-  const auto crossing = cross_lines(p, q, face.a, face.b);
-  if (!crossing || crossing->along_pq <= 0.0 || crossing->along_pq >= 1.0) return false;
-  if (!on_face(face, crossing->along_ab)) return false;
-  if (p_w.z() + crossing->along_pq * (q_w.z() - p_w.z()) > face.height_m) return false;
-  return distance_to_segment(p, face.a, face.b) > kOnFace &&
-         distance_to_segment(q, face.a, face.b) > kOnFace;
-}
-
-}  // namespace
 
 FloorPlan::FloorPlan(std::vector<Eigen::Vector2d> outline, double ceiling_m,
                      std::vector<Wall> partitions, std::vector<Obstacle> obstacles)

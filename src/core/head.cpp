@@ -3,18 +3,20 @@
 #include <cmath>
 
 #include "vigia/core/angle.hpp"
+#include "vigia/core/plane_geometry.hpp"
 
 namespace vigia {
 namespace {
 
-Eigen::Matrix3d rotation_z(double angle) {
-  return Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-}
-
 /// rRh: pan about the base's z, then tilt (positive up) about the head's −y.
 Eigen::Matrix3d base_from_head(const HeadGeometry& geometry, const HeadAngles& angles) {
-  return rotation_z(geometry.mount_yaw + angles.pan) *
-         Eigen::AngleAxisd(-angles.tilt, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  const Eigen::Vector2d pan = unit_vector(geometry.mount_yaw + angles.pan);
+  const Eigen::Vector2d tilt = unit_vector(angles.tilt);
+  Eigen::Matrix3d rRh;
+  rRh << pan.x() * tilt.x(), -pan.y(), -pan.x() * tilt.y(),  //
+      pan.y() * tilt.x(), pan.x(), -pan.y() * tilt.y(),      //
+      tilt.y(), 0.0, tilt.x();
+  return rRh;
 }
 
 /// Twist in frame c of a camera at p_r that turns about the axis (point, direction) of frame r.
@@ -51,8 +53,8 @@ Eigen::Matrix<double, 6, 2> camera_jacobian_head(const HeadGeometry& geometry,
 Eigen::Matrix<double, 6, 2> camera_jacobian_head(const HeadGeometry& geometry,
                                                  const HeadAngles& angles,
                                                  const Eigen::Isometry3d& rMc) {
-  const Eigen::Vector3d tilt_axis_r =
-      -(rotation_z(geometry.mount_yaw + angles.pan) * Eigen::Vector3d::UnitY());
+  const Eigen::Vector2d ahead = unit_vector(geometry.mount_yaw + angles.pan);
+  const Eigen::Vector3d tilt_axis_r(ahead.y(), -ahead.x(), 0.0);
   Eigen::Matrix<double, 6, 2> jacobian;
   jacobian << twist_about(rMc, geometry.mount_r, Eigen::Vector3d::UnitZ()),
       twist_about(rMc, geometry.mount_r, tilt_axis_r);

@@ -21,7 +21,9 @@ Eigen::Vector3d difference(const Pose2& a, const Pose2& b) {
 
 Eigen::Isometry3d to_isometry(const Pose2& pose, double z) {
   Eigen::Isometry3d wMr = Eigen::Isometry3d::Identity();
-  wMr.linear() = Eigen::AngleAxisd(pose.theta, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  const double c = std::cos(pose.theta);
+  const double s = std::sin(pose.theta);
+  wMr.linear() << c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0;
   wMr.translation() = Eigen::Vector3d(pose.x, pose.y, z);
   return wMr;
 }

@@ -10,11 +10,33 @@ void Canvas::attach(const Frame& frame) {
   if (image_.getHeight() != rows || image_.getWidth() != columns) {
     image_.resize(rows, columns, kSentinel);
   } else {
-    for (int v = computed_.v; v < computed_.bottom(); ++v)
-      std::fill_n(image_[static_cast<unsigned>(v)] + computed_.u, computed_.width, kSentinel);
+    wipe();
   }
   frame_ = &frame;
   computed_ = {};
+  runs_.clear();
+}
+
+void Canvas::wipe() {
+  for (int v = computed_.v; v < computed_.bottom(); ++v)
+    std::fill_n(image_[static_cast<unsigned>(v)] + computed_.u, computed_.width, kSentinel);
+  for (const Run& run : runs_)
+    std::fill_n(image_[static_cast<unsigned>(run.v)] + run.u_begin, run.width(), kSentinel);
+}
+
+void Canvas::require(const std::vector<Run>& runs) {
+  const auto is_computed = [&](const Run& run) {
+    return contains(computed_, {run.u_begin, run.v, run.width(), 1});
+  };
+  if (std::all_of(runs.begin(), runs.end(), is_computed)) return;
+  room_.resize(pixels_in(runs));
+  frame_->read_grey_runs(runs, room_.data());
+  const unsigned char* next = room_.data();
+  for (const Run& run : runs) {
+    std::copy_n(next, run.width(), image_[static_cast<unsigned>(run.v)] + run.u_begin);
+    next += run.width();
+  }
+  runs_.insert(runs_.end(), runs.begin(), runs.end());
 }
 
 void Canvas::require(const Window& window) {

@@ -21,7 +21,8 @@ Navigator::Navigator(const MissionSetup& setup, EventLog& log)
              setup.pilot),
       waypoints_(setup.waypoints) {
   for (std::size_t i = 1; i + 1 < waypoints_.size(); ++i)
-    vias_.push_back({waypoints_[i], std::numeric_limits<double>::infinity()});
+    vias_.push_back({waypoints_[i], std::numeric_limits<double>::infinity(), {}});
+  place_vias();
 }
 
 NavigationStep Navigator::step(const pilot::PilotInput& input) {
@@ -53,18 +54,25 @@ void Navigator::record(const pilot::PilotOutput& output) {
   status_ = output.status;
 }
 
+void Navigator::place_vias() {
+  const Path& path = pilot_.path();
+  double station = 0.0;
+  for (Via& via : vias_) {
+    const bool ahead =
+        std::find(waypoints_.begin() + 1, waypoints_.end(), via.at) != waypoints_.end();
+    if (ahead) station = path.project(via.at, station, path.length());
+    via.station_m = ahead ? std::optional(station) : std::nullopt;
+  }
+}
+
 /// A point counts as passed when the robot's body has been over it.
 void Navigator::watch_vias(const Pose2& here) {
   for (Via& via : vias_) via.nearest_m = std::min(via.nearest_m, (here.position() - via.at).norm());
-  const Path& path = pilot_.path();
-  double station = 0.0;
   auto next = vias_.begin();
   while (next != vias_.end()) {
-    const bool ahead =
-        std::find(waypoints_.begin() + 1, waypoints_.end(), next->at) != waypoints_.end();
-    if (ahead) station = path.project(next->at, station, path.length());
     const bool passed = next->nearest_m <= setup_.robot.robot.radius_m;
-    if (!passed && ahead && !pilot_.arrived() && pilot_.station() < station + kBehind_m) break;
+    const bool ahead = next->station_m && pilot_.station() < *next->station_m + kBehind_m;
+    if (!passed && ahead && !pilot_.arrived()) break;
     if (!passed)
       log_.record(EventKind::via_missed,
                   {{"x_m", next->at.x()}, {"y_m", next->at.y()}, {"nearest_m", next->nearest_m}});
@@ -135,6 +143,7 @@ bool Navigator::replan(const Pose2& from, const std::string& reason,
   if (route.status != planner::RouteStatus::found) return false;
   waypoints_ = waypoints;
   pilot_.follow(route.path);
+  place_vias();
   log_.record(EventKind::replan, {{"length_m", route.path.length()}}, {{"reason", reason}});
   return true;
 }

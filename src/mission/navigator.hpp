@@ -37,6 +37,8 @@ class Navigator {
 
  private:
   void record(const pilot::PilotOutput& output);
+  /// Where on the path that the pilot follows the points to pass lie.
+  void place_vias();
   /// Says which points to pass lie behind and were not passed.
   void watch_vias(const Pose2& here);
   void go_round(const pilot::PilotInput& input, const pilot::PilotOutput& output,
@@ -57,6 +59,7 @@ class Navigator {
   struct Via {
     Eigen::Vector2d at;
     double nearest_m;
+    std::optional<double> station_m;  ///< on the path, if that still leads there
   };
   std::vector<Via> vias_;
 };

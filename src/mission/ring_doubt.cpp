@@ -1,9 +1,11 @@
 #include "ring_doubt.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "vigia/core/plane_geometry.hpp"
+#include "vigia/core/sector.hpp"
 
 namespace vigia::mission {
 namespace {
@@ -29,15 +31,18 @@ std::vector<RingDoubt::Beam> RingDoubt::compare(const RangeScan& scan, const Bel
   const double sigma_heading = std::sqrt(belief.covariance(2, 2));
   const double half = std::max(0.0, model_.half_cone - 2.0 * sigma_heading);
   const double tolerance = kMapTolerance_m + 3.0 * belief.position_sigma();
+  const NearFaces faces(plan_, belief.pose.position(), scan.reach_m, model_.height_m);
   std::vector<Beam> beams;
+  beams.reserve(scan.readings.size());
+  std::array<Eigen::Vector2d, kRays> within;
+  for (int i = 0; i < kRays; ++i)
+    within[static_cast<std::size_t>(i)] = unit_vector(half * (2.0 * i / (kRays - 1) - 1.0));
   for (const RangeReading& reading : scan.readings) {
+    const Eigen::Vector2d middle = unit_vector(belief.pose.theta + reading.bearing);
     Beam beam;
     double nearest_m = scan.reach_m;
-    for (int i = 0; i < kRays; ++i) {
-      const double within = half * (2.0 * i / (kRays - 1) - 1.0);
-      const auto hit = plan_.cast(belief.pose.position(),
-                                  unit_vector(belief.pose.theta + reading.bearing + within),
-                                  nearest_m, model_.height_m);
+    for (const Eigen::Vector2d& ray : within) {
+      const auto hit = faces.cast(turned(ray, middle), nearest_m);
       if (!hit || hit->distance_m >= nearest_m) continue;
       nearest_m = hit->distance_m;
       beam.face = hit->wall;

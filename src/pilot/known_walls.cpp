@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vigia/core/plane_geometry.hpp"
 #include "vigia/core/sector.hpp"
 
 namespace vigia::pilot {
@@ -46,9 +47,11 @@ bool explained(const RangeReading& reading, const FloorPlan& plan, const Pose2& 
     const Vector2d d = p - base.position();
     return Vector2d(c * d.x() + s * d.y(), -s * d.x() + c * d.y());
   };
+  const double farthest = reading.range_m + slack;
   return std::any_of(plan.faces().begin(), plan.faces().end(), [&](const Wall& face) {
-    return crosses_sector(in_beam(face.a), in_beam(face.b), slope, reading.range_m - slack,
-                          reading.range_m + slack);
+    return distance_to_segment(base.position(), face.a, face.b) <= farthest &&
+           crosses_sector(in_beam(face.a), in_beam(face.b), slope, reading.range_m - slack,
+                          farthest);
   });
 }
 

@@ -27,6 +27,36 @@ TEST(Sector, MeetsTheNearestPointOfTheFacesInIt) {
   EXPECT_FALSE(ahead(3.0, 0.0, from_deg(1.0), 2.0));
 }
 
+TEST(NearFaces, AreMetByTheRaysThatMeetThePlanWithinReach) {
+  const FloorPlan plan = hall_with_door();
+  constexpr double kReach_m = 3.5;
+  int met = 0;
+  int missed = 0;
+  for (const Eigen::Vector2d& from : {Eigen::Vector2d(4.0, 3.0), Eigen::Vector2d(5.0, 1.0),
+                                      Eigen::Vector2d(9.8, 5.9), Eigen::Vector2d(7.0, 3.0)}) {
+    const NearFaces faces(plan, from, kReach_m, 0.3);
+    for (int i = 0; i < 97; ++i) {
+      const Eigen::Vector2d direction = unit_vector(2.0 * kPi * i / 97.0);
+      const auto near = faces.cast(direction, kReach_m);
+      const auto all = plan.cast(from, direction, kReach_m, 0.3);
+      ASSERT_EQ(near.has_value(), all.has_value());
+      ++(near ? met : missed);
+      if (!near) continue;
+      EXPECT_EQ(near->distance_m, all->distance_m);
+      EXPECT_EQ(near->wall, all->wall);
+    }
+  }
+  EXPECT_GT(met, 100);
+  EXPECT_GT(missed, 50);
+}
+
+TEST(Sector, TurnsByAUnitVector) {
+  const Sector turned = Sector::about(0.3, 0.1).turned(unit_vector(1.2));
+  const Sector direct = Sector::about(1.5, 0.1);
+  EXPECT_LT((turned.right - direct.right).norm(), 1e-15);
+  EXPECT_LT((turned.left - direct.left).norm(), 1e-15);
+}
+
 TEST(Sector, SeesOverWhatIsLower) {
   const Sector sector = Sector::about(0.0, from_deg(5.0));
   EXPECT_NEAR(*nearest_face(hall_with_door(), {4.0, 5.0}, sector, 9.0, 0.3), 1.0, 1e-12);

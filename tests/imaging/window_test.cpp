@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -51,6 +52,23 @@ TEST(Window, ContainsItselfAndEveryEmptyOne) {
   EXPECT_TRUE(contains(window, window));
   EXPECT_TRUE(contains(window, {100, 100, 0, 0}));
   EXPECT_FALSE(contains(window, {3, 4, 6, 6}));
+}
+
+TEST(Canvas, HoldsRunsBesideItsRectangleUntilTheNextFrame) {
+  const ImageFrame frame = ramp(40, 50);
+  const auto truth = grey_image(frame);
+  Canvas canvas;
+  canvas.attach(frame);
+  canvas.require(std::vector<Run>{{5, 10, 14}, {6, 30, 31}});
+  EXPECT_TRUE(canvas.computed().empty());
+  EXPECT_EQ(canvas.image()[5][10], truth[5][10]);
+  EXPECT_EQ(canvas.image()[5][13], truth[5][13]);
+  EXPECT_EQ(canvas.image()[5][14], Canvas::kSentinel);
+  EXPECT_EQ(canvas.image()[6][30], truth[6][30]);
+  canvas.require(Window{8, 4, 10, 3});
+  EXPECT_EQ(canvas.image()[6][9], truth[6][9]);
+  canvas.attach(frame);
+  EXPECT_TRUE(holds(canvas, {}));
 }
 
 TEST(Canvas, HoldsTheSentinelWhereNothingIsComputed) {

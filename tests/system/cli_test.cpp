@@ -47,6 +47,18 @@ TEST_F(Program, WithoutACommandIsWrongUsage) {
   EXPECT_EQ(vigia("").status, 2);
 }
 
+TEST_F(Program, SaysThatItsOutputWasNotTaken) {
+  const fs::path full = "/dev/full";
+  if (!fs::exists(full)) GTEST_SKIP() << full << " is not there";
+  for (const std::string& command :
+       {std::string("help keys"), short_run(dir_.path() / "run") + " --json --no-pictures",
+        short_run(dir_.path() / "run") + " --no-pictures"}) {
+    const auto result = vigia(command + " >" + full.string());
+    EXPECT_EQ(result.status, 2) << command;
+    EXPECT_THAT(result.err, HasSubstr("standard output")) << command;
+  }
+}
+
 struct WrongUsage {
   const char* name;
   const char* arguments;

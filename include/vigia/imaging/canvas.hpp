@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "vigia/imaging/frame.hpp"
 
 namespace vigia::imaging {
@@ -18,6 +20,9 @@ class Canvas {
   /// rectangle: it becomes the union's bounding box.
   void require(const Window& window);
 
+  /// Computes pixels in the frame without making them part of the computed rectangle.
+  void require(const std::vector<Run>& runs);
+
   const vpImage<unsigned char>& image() const { return image_; }
   const Window& computed() const { return computed_; }
   const Frame& frame() const { return *frame_; }
@@ -28,10 +33,13 @@ class Canvas {
 
  private:
   void fill(const Window& window);
+  void wipe();
 
   const Frame* frame_ = nullptr;
   vpImage<unsigned char> image_;
   Window computed_;
+  std::vector<Run> runs_;  ///< that hold pixels beside the rectangle
+  std::vector<unsigned char> room_;
 };
 
 }  // namespace vigia::imaging

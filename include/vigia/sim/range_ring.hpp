@@ -11,6 +11,7 @@
 #include "vigia/core/pose.hpp"
 #include "vigia/core/random.hpp"
 #include "vigia/core/range_scan.hpp"
+#include "vigia/core/sector.hpp"
 
 namespace vigia::sim {
 
@@ -51,6 +52,8 @@ class RangeRing {
  private:
   RangeRingParams params_;
   RandomStream random_;
+  std::vector<double> bearings_;  ///< of the beams, from the robot's front, rad
+  std::vector<Sector> beams_;     ///< about the robot's front
 };
 
 }  // namespace vigia::sim
