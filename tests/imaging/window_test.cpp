@@ -59,7 +59,7 @@ TEST(Canvas, HoldsRunsBesideItsRectangleUntilTheNextFrame) {
   const auto truth = grey_image(frame);
   Canvas canvas;
   canvas.attach(frame);
-  canvas.require(std::vector<Run>{{5, 10, 14}, {6, 30, 31}});
+  canvas.require(std::vector<imaging::Run>{{5, 10, 14}, {6, 30, 31}});
   EXPECT_TRUE(canvas.computed().empty());
   EXPECT_EQ(canvas.image()[5][10], truth[5][10]);
   EXPECT_EQ(canvas.image()[5][13], truth[5][13]);

@@ -129,7 +129,9 @@ TEST(DiscTracker, ReadsOfALargeDiscThatMovesAsExpectedItsOutlineAlone) {
     ASSERT_EQ(feature.status, FeatureStatus::found);
     EXPECT_NEAR(feature.ellipse.u, 150.0 + k, 0.05);
     // A band of 11 px along 350 px of outline; the disc's rectangle has 13,000.
-    if (k > 0) EXPECT_LT(pixels, 4500);
+    if (k > 0) {
+      EXPECT_LT(pixels, 4500);
+    }
     tracker->expect_motion({1.0, 0.0});
   }
 }

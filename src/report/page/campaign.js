@@ -345,5 +345,7 @@
   let resizing = 0;
   window.addEventListener("resize", () => { clearTimeout(resizing); resizing = setTimeout(redraw, 120); });
   redraw();
+  const linked = $(location.hash.slice(1));
+  if (linked) linked.scrollIntoView();
   vigia.ready();
 })();

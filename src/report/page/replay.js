@@ -585,6 +585,7 @@
     if (x < plot.bbox.left || x > plot.bbox.left + plot.bbox.width) return;
     const to = plot.ctx;
     to.save();
+    to.setLineDash([]);
     to.strokeStyle = colours.mark;
     to.lineWidth = window.devicePixelRatio || 1;
     to.beginPath();
