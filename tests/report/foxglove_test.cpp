@@ -23,6 +23,12 @@ bool has_type(const Value& value, const std::string& type) {
   return type == "number" && value.is_number();
 }
 
+std::string below(std::string place, const std::string& name) {
+  place += '.';
+  place += name;
+  return place;
+}
+
 /// Where @p value breaks @p rule, a JSON schema of types, required fields, sizes and choices.
 std::string fault(const Value& value, const Value& rule, const std::string& place = "message") {
   if (rule.contains("type") && !has_type(value, rule["type"])) return place + ": type";
@@ -39,17 +45,17 @@ std::string fault(const Value& value, const Value& rule, const std::string& plac
   }
   if (!value.is_object()) return {};
   for (const auto& name : rule.value("required", std::vector<std::string>{}))
-    if (!value.contains(name)) return place + "." + name + ": missing";
+    if (!value.contains(name)) return below(place, name).append(": missing");
   for (const auto& [name, inner] : value.items()) {
-    if (!rule["properties"].contains(name)) return place + "." + name + ": unknown";
-    if (auto deeper = fault(inner, rule["properties"][name], place + "." + name); !deeper.empty())
+    if (!rule["properties"].contains(name)) return below(place, name).append(": unknown");
+    if (auto deeper = fault(inner, rule["properties"][name], below(place, name)); !deeper.empty())
       return deeper;
   }
   return {};
 }
 
 Value parsed(Message kind, const std::string& text) {
-  const Value message = Value::parse(text);
+  Value message = Value::parse(text);
   EXPECT_EQ(fault(message, Value::parse(schema(kind).text)), "") << text.substr(0, 500);
   return message;
 }
