@@ -18,6 +18,7 @@ void add_campaign(CLI::App& app, int& status);
 void add_evaluate(CLI::App& app, int& status);
 void add_reproduce(CLI::App& app, int& status);
 void add_report(CLI::App& app, int& status);
+void add_export(CLI::App& app, int& status);
 void add_help(CLI::App& app, int& status);
 
 }  // namespace vigia::app

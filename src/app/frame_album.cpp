@@ -1,5 +1,7 @@
 #include "frame_album.hpp"
 
+#include "recording.hpp"
+
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -12,25 +14,6 @@ namespace {
 
 /// A tracked landmark has settled in the middle of the picture after this long.
 constexpr double kSettled_s = 0.5;
-
-/// What the eye made of the frame, and what its attention was about.
-imaging::Overlay overlay_of(const mission::Tick& tick, const perception::Eye& eye) {
-  imaging::Overlay overlay = eye.overlay();
-  const double t_s = tick.estimator.now.seconds();
-  if (!tick.attention) {
-    overlay.lines.push_back(fmt::format("t = {:.2f} s", t_s));
-    return overlay;
-  }
-  const mission::AttentionTick& attention = *tick.attention;
-  overlay.lines.push_back(fmt::format("t = {:.2f} s   {}", t_s, to_string(attention.gaze)));
-  if (attention.order)
-    overlay.lines.push_back(fmt::format("landmark {}   look {}   zoom {:.1f} mm",
-                                        attention.order->landmark, attention.look,
-                                        tick.head.zoom_mm));
-  if (attention.centring_px)
-    overlay.lines.push_back(fmt::format("off centre {:.2f} px", *attention.centring_px));
-  return overlay;
-}
 
 }  // namespace
 

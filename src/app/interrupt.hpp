@@ -4,6 +4,9 @@
 
 namespace vigia::app {
 
+/// Exit status of a program that was interrupted, as a shell says of SIGINT.
+inline constexpr int kInterrupted = 130;
+
 /// From the first call on, SIGINT and SIGTERM ask the program to come to its end, once; a second
 /// one ends it at once. Blocking reads return early.
 void catch_interrupts();

@@ -53,6 +53,7 @@ int run_program(int argc, char** argv) {
   vigia::app::add_campaign(app, status);
   vigia::app::add_reproduce(app, status);
   vigia::app::add_report(app, status);
+  vigia::app::add_export(app, status);
   vigia::app::add_help(app, status);
   try {
     app.parse(argc, argv);

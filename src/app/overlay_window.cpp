@@ -1,5 +1,7 @@
 #include "overlay_window.hpp"
 
+#include <utility>
+
 #include <visp3/core/vpDisplayException.h>
 #include <visp3/core/vpMouseButton.h>
 
@@ -8,7 +10,8 @@
 
 namespace vigia::app {
 
-OverlayWindow::OverlayWindow() = default;
+OverlayWindow::OverlayWindow(std::string title, std::string without)
+    : title_(std::move(title)), without_(std::move(without)) {}
 OverlayWindow::~OverlayWindow() = default;
 
 void OverlayWindow::show(const vpImage<vpRGBa>& picture) {
@@ -18,7 +21,7 @@ void OverlayWindow::show(const vpImage<vpRGBa>& picture) {
   try {
     if (!display_ || !same_size) {
       display_.reset();
-      display_ = imaging::open_window(picture_, "vigia track");
+      display_ = imaging::open_window(picture_, title_);
     }
     vpDisplay::display(picture_);
     vpDisplay::flush(picture_);
@@ -26,9 +29,7 @@ void OverlayWindow::show(const vpImage<vpRGBa>& picture) {
     vpMouseButton::vpMouseButtonType button = vpMouseButton::none;
     closed_ = vpDisplay::getClick(picture_, at, button, false) && button == vpMouseButton::button3;
   } catch (const vpException&) {
-    throw InputError(
-        "--view: no X display can be opened; without --view, --out writes the "
-        "overlay pictures");
+    throw InputError("--view: no X display can be opened; " + without_);
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include <visp3/core/vpDisplay.h>
 #include <visp3/core/vpImage.h>
@@ -11,7 +12,8 @@ namespace vigia::app {
 /// A window that shows pictures as they come.
 class OverlayWindow {
  public:
-  OverlayWindow();
+  /// @p without: what becomes of it, or helps, where there is no display.
+  OverlayWindow(std::string title, std::string without);
   ~OverlayWindow();
 
   /// Throws InputError when there is no display.
@@ -20,6 +22,8 @@ class OverlayWindow {
   bool closed() const { return closed_; }
 
  private:
+  std::string title_;
+  std::string without_;
   vpImage<vpRGBa> picture_;
   std::unique_ptr<vpDisplay> display_;
   bool closed_ = false;

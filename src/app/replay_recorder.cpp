@@ -2,7 +2,6 @@
 
 #include "suitability_timeline.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -11,25 +10,6 @@
 
 namespace vigia::app {
 namespace {
-
-/// "sigma_m" 0.012 as "sigma 0.012 m".
-std::string in_words(const std::string& key, double value) {
-  const auto cut = key.rfind('_');
-  const std::string unit = cut == std::string::npos ? "" : key.substr(cut + 1);
-  const bool known = unit == "m" || unit == "s" || unit == "px" || unit == "rad" || unit == "deg";
-  std::string name = known ? key.substr(0, cut) : key;
-  for (char& c : name)
-    if (c == '_') c = ' ';
-  return fmt::format("{} {:.4g}{}", name, value, known ? " " + unit : "");
-}
-
-std::string text_of(const mission::Event& event) {
-  std::string text;
-  const auto add = [&text](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
-  for (const auto& [key, value] : event.numbers) add(in_words(key, value));
-  for (const auto& [key, value] : event.texts) add(value);
-  return text;
-}
 
 /// Direction on the floor of what the middle of a side of the picture shows, in the base frame.
 std::optional<double> rim(const Camera& camera, const CameraModel& model, const HeadAngles& head,
@@ -45,20 +25,6 @@ bool sees_all_round(const Camera& camera) {
          std::holds_alternative<UnifiedOmni>(std::get<CameraModel>(camera.optics));
 }
 
-constexpr std::size_t kShownHypotheses = 50;
-
-/// Of many hypotheses the likeliest: a page shows no more.
-Belief shown(Belief belief) {
-  auto& all = belief.hypotheses;
-  if (all.size() <= kShownHypotheses) return belief;
-  const auto end = all.begin() + kShownHypotheses;
-  std::partial_sort(
-      all.begin(), end, all.end(),
-      [](const PoseHypothesis& a, const PoseHypothesis& b) { return a.weight > b.weight; });
-  all.erase(end, all.end());
-  return belief;
-}
-
 }  // namespace
 
 void ReplayRecorder::on_start(const mission::MissionStart& start) {
@@ -72,7 +38,7 @@ void ReplayRecorder::on_start(const mission::MissionStart& start) {
     const CameraModel model = camera.model(setup_->robot.initial_zoom_mm);
     run_.cameras.push_back(
         {fmt::format("camera {}", camera.id), image_width(model), image_height(model), {}, {}, {}});
-    schedules_.emplace_back();
+    schedules_.push_back({1.0 / kPictures_hz});
   }
   for (const std::string& name : setup_->localizers)
     run_.localizers.push_back({name, name == setup_->primary, {}, {}});
@@ -89,7 +55,7 @@ void ReplayRecorder::on_tick(const mission::Tick& tick) {
   const auto look = follower_.process(tick);
   run_.target.push_back(look ? std::optional(look->landmark) : std::nullopt);
   for (std::size_t i = 0; i < run_.localizers.size(); ++i) {
-    run_.localizers[i].beliefs.push_back(shown(*tick.estimator.localizers[i].belief));
+    run_.localizers[i].beliefs.push_back(with_likeliest(*tick.estimator.localizers[i].belief));
     run_.localizers[i].bound_m.push_back(std::sqrt(scorer_.bound_position_m2(i)));
   }
   note_cameras(tick);
@@ -111,10 +77,7 @@ void ReplayRecorder::note_cameras(const mission::Tick& tick) {
 
 void ReplayRecorder::note_picture(const mission::EyeTick& shown, double t_s) {
   const std::size_t i = camera_index_.at(shown.camera);
-  Schedule& schedule = schedules_[i];
-  constexpr double kRounding_s = 1e-6;
-  if (t_s < schedule.due_s - kRounding_s) return;
-  schedule.due_s = t_s + schedule.period_s;
+  if (!schedules_[i].due(t_s)) return;
   report::ReplayCamera& camera = run_.cameras[i];
   report::ReplayImage image;
   image.t_s = t_s;
@@ -124,7 +87,7 @@ void ReplayRecorder::note_picture(const mission::EyeTick& shown, double t_s) {
   camera.images.push_back(std::move(image));
   if (camera.images.size() > kPictures / run_.cameras.size()) {
     thin_out(camera);
-    schedule.period_s *= 2.0;
+    schedules_[i].period_s *= 2.0;
   }
 }
 
@@ -137,7 +100,7 @@ void ReplayRecorder::thin_out(report::ReplayCamera& camera) {
 
 void ReplayRecorder::on_event(const mission::Event& event) {
   run_.events.push_back(
-      {event.stamp.seconds(), std::string(to_string(event.kind)), text_of(event)});
+      {event.stamp.seconds(), std::string(to_string(event.kind)), in_words(event)});
 }
 
 report::ReplayRun ReplayRecorder::run(const std::string& command) const {

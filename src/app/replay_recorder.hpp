@@ -1,6 +1,7 @@
 #pragma once
 
 #include "look_follower.hpp"
+#include "recording.hpp"
 
 #include <map>
 #include <string>
@@ -40,10 +41,6 @@ class ReplayRecorder : public mission::Listener {
   const evaluation::DriveScorer& scorer_;
   const mission::MissionSetup* setup_ = nullptr;
   report::ReplayRun run_;
-  struct Schedule {
-    double period_s = 1.0 / kPictures_hz;
-    double due_s = 0.0;
-  };
   LookFollower follower_;
   std::vector<Schedule> schedules_;               ///< of run_.cameras
   std::map<CameraId, std::size_t> camera_index_;  ///< into run_.cameras

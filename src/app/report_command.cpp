@@ -1,7 +1,7 @@
 #include "campaign_figures.hpp"
 #include "commands.hpp"
-#include "object_file.hpp"
 #include "replay_recorder.hpp"
+#include "run_again.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -10,12 +10,10 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
-#include <spdlog/spdlog.h>
 
 #include "vigia/core/error.hpp"
 #include "vigia/core/output_file.hpp"
-#include "vigia/mission/mission.hpp"
+#include "vigia/mission/setup.hpp"
 
 namespace vigia::app {
 namespace {
@@ -27,32 +25,13 @@ struct ReportOptions {
   std::string out;
 };
 
-/// What the page says of a folder whose drive the program no longer repeats.
-std::string compared(const fs::path& folder, const std::string& summary_json) {
-  ObjectFile found = object_in(folder / "summary.json");
-  if (!found.fault.empty()) return fmt::format("Driven again from mission.yaml: {}.", found.fault);
-  auto again = nlohmann::ordered_json::parse(summary_json);
-  for (auto* each : {&found.values, &again}) each->erase("version");
-  // As sets of members: their order is none of the drive's.
-  if (nlohmann::json(found.values) == nlohmann::json(again)) return {};
-  return "Driven again from mission.yaml, and this program's drive differs from the folder's: the "
-         "figures on this page are not those of its summary.json.";
-}
-
 report::ReplayRun replayed(const fs::path& folder) {
-  const fs::path mission_file = folder / "mission.yaml";
-  if (!fs::exists(mission_file))
-    throw InputError(
-        folder.string() +
-        " is no run folder: there is no mission.yaml; `vigia run` makes one, and `vigia "
-        "evaluate` a campaign's");
-  const mission::MissionSetup setup = mission::load_mission(mission_file);
+  const mission::MissionSetup setup = mission::load_mission(mission_file(folder));
   evaluation::DriveScorer scorer;
   ReplayRecorder recorder(scorer);
-  mission::run_mission(setup, setup.seed, {&scorer, &recorder});
-  report::ReplayRun run = recorder.run(fmt::format("vigia run {}", mission_file.string()));
-  run.note = compared(folder, run.summary_json);
-  if (!run.note.empty()) spdlog::warn("{}: {}", folder.string(), run.note);
+  const std::string note = run_again(folder, setup, scorer, {&recorder});
+  report::ReplayRun run = recorder.run(fmt::format("vigia run {}", mission_file(folder).string()));
+  run.note = note;
   return run;
 }
 

@@ -2,8 +2,10 @@
 #include "drive_picture.hpp"
 #include "frame_album.hpp"
 #include "interrupt.hpp"
+#include "live_view.hpp"
 #include "progress.hpp"
 #include "replay_recorder.hpp"
+#include "video_recorder.hpp"
 
 #include <iostream>
 #include <memory>
@@ -21,7 +23,7 @@
 namespace vigia::app {
 namespace {
 
-constexpr int kInterrupted = 130;  // as a shell says of SIGINT
+constexpr const char* kVideo = "camera.mp4";
 
 struct RunOptions {
   std::string mission;
@@ -32,6 +34,8 @@ struct RunOptions {
   bool quiet = false;
   bool no_pictures = false;
   bool no_report = false;  ///< or no pictures, which it is full of
+  bool video = false;
+  std::string view;  ///< the pace, or empty
 };
 
 void print_summary(const evaluation::DriveScore& score, const RunOptions& options,
@@ -53,6 +57,7 @@ void print_summary(const evaluation::DriveScore& score, const RunOptions& option
   fmt::print("\nrun folder: {}\n", folder);
   if (!options.no_pictures) fmt::print("picture:    {}/map.png\n", folder);
   if (!options.no_report) fmt::print("replay:     {}/report.html\n", folder);
+  if (options.video) fmt::print("video:      {}/{}\n", folder, kVideo);
 }
 
 /// For a shell.
@@ -83,9 +88,13 @@ int run(const RunOptions& options) {
   FrameAlbum album;
   Progress progress(options.quiet || options.json);
   ReplayRecorder replay(scorer);
+  VideoRecorder video(folder.folder().staging() / kVideo);
+  LiveView view(options.view == "fast" ? Pace::fast : Pace::real);
   std::vector<mission::Listener*> listeners{&interruption, &scorer, &progress, &folder};
   if (!options.no_pictures) listeners.insert(listeners.end(), {&picture, &album});
   if (!options.no_report) listeners.push_back(&replay);
+  if (options.video) listeners.push_back(&video);
+  if (!options.view.empty()) listeners.push_back(&view);
   const auto outcome = mission::run_mission(setup, setup.seed, listeners);
   const std::string summary = evaluation::summary_json(scorer.score());
   folder.folder().add("summary.json", summary);
@@ -130,6 +139,13 @@ void add_run(CLI::App& app, int& status) {
   command->add_flag(
       "--no-pictures", options->no_pictures,
       "Write no frames/, no map.png and no report.html: the run starts and ends sooner");
+  command->add_flag("--video", options->video,
+                    "Write camera.mp4, H.264: the cameras with overlay, a picture a tick");
+  command
+      ->add_flag("--view{real}", options->view,
+                 "Show cameras and map in a window, in real time; --view=fast as fast as the "
+                 "mission goes; a right click closes the window")
+      ->check(CLI::IsMember({"real", "fast"}));
   command->add_flag("--quiet", options->quiet, "No progress line");
   command->callback([options, &status] {
     options->no_report = options->no_report || options->no_pictures;

@@ -71,7 +71,8 @@ std::string file_stem(const std::string& name) {
 TrackRun::TrackRun(Tracker tracker, std::optional<LandmarkPoses> poses, const TrackOutput& output)
     : tracker_(std::move(tracker)), poses_(std::move(poses)), output_(output) {
   if (!output_.folder.empty()) folder_.emplace(output_.folder, kFeatures);
-  if (output_.view) window_.emplace();
+  if (output_.view)
+    window_.emplace("vigia track", "without --view, --out writes the overlay pictures");
 }
 
 TrackRun::~TrackRun() = default;

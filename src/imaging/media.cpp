@@ -38,6 +38,11 @@ const Media& media() {
   return loaded;
 }
 
+std::unique_ptr<VideoWriter> write_video(const std::filesystem::path& mp4, int width, int height,
+                                         double pictures_hz) {
+  return media().write_video(mp4, width, height, pictures_hz);
+}
+
 std::unique_ptr<vpDisplay> open_window(vpImage<vpRGBa>& picture, const std::string& title) {
   return media().open_window(picture, title);
 }

@@ -11,6 +11,7 @@
 
 #include "vigia/imaging/picture_source.hpp"
 #include "vigia/imaging/stream_address.hpp"
+#include "vigia/imaging/video_writer.hpp"
 
 namespace vigia::imaging {
 
@@ -39,6 +40,9 @@ class Media {
   /// behind an address, which states its length, ends where it ends.
   virtual std::unique_ptr<PictureSource> open_stream(const StreamAddress& address,
                                                      const SourceParams& params) const = 0;
+  /// What vigia::imaging::write_video does.
+  virtual std::unique_ptr<VideoWriter> write_video(const std::filesystem::path& mp4, int width,
+                                                   int height, double pictures_hz) const = 0;
   /// An X window that shows @p picture. @throws vpDisplayException without a display
   virtual std::unique_ptr<vpDisplay> open_window(vpImage<vpRGBa>& picture,
                                                  const std::string& title) const = 0;

@@ -12,9 +12,6 @@
 namespace vigia::report {
 namespace {
 
-// χ² of two degrees of freedom at 95 %.
-constexpr double kChi2At95 = 5.991464547107979;
-
 constexpr double kHalo = 2.5;  // round labels
 
 std::vector<Eigen::Vector2d> positions(const std::vector<Pose2>& poses) {

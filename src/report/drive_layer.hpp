@@ -10,6 +10,9 @@
 
 namespace vigia::report {
 
+/// χ² of two degrees of freedom at 95 %.
+inline constexpr double kChi2At95 = 5.991464547107979;
+
 /// How the lines of the map, the chart and the legend look: one kind each.
 struct DriveStyle {
   Stroke planned{palette::kInk, 1.2, {9.0, 7.0}};

@@ -1,5 +1,6 @@
 #include "vigia/report/overlay.hpp"
 
+#include "outlines.hpp"
 #include "sheet.hpp"
 
 #include <algorithm>
@@ -11,11 +12,6 @@ namespace {
 using imaging::Overlay;
 
 using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
-
-bool finite(const Ellipse& e) {
-  return std::isfinite(e.u) && std::isfinite(e.v) && std::isfinite(e.a) && std::isfinite(e.b) &&
-         std::isfinite(e.psi);
-}
 
 // Cairo's pixel centres lie at half-integers.
 Eigen::Vector2d on_sheet(double u, double v) {
@@ -32,13 +28,9 @@ void outlined(const Sheet& sheet, const std::vector<Eigen::Vector2d>& points, bo
 
 void draw_ellipse(const Sheet& sheet, const Ellipse& e, const Stroke& stroke) {
   constexpr int kPoints = 96;
-  const Eigen::Rotation2Dd rotation(e.psi);
   std::vector<Eigen::Vector2d> outline;
-  for (int i = 0; i < kPoints; ++i) {
-    const double t = 2.0 * M_PI * i / kPoints;
-    outline.emplace_back(on_sheet(e.u, e.v) +
-                         rotation * Eigen::Vector2d(e.a * std::cos(t), e.b * std::sin(t)));
-  }
+  for (const Eigen::Vector2d& p : outline_points(e, kPoints))
+    outline.push_back(on_sheet(p.x(), p.y()));
   outlined(sheet, outline, true, stroke);
 }
 
@@ -55,9 +47,9 @@ void draw_on(const Sheet& sheet, const Overlay& overlay, double width) {
   if (overlay.principal_point && overlay.principal_point->allFinite())
     draw_cross(sheet, on_sheet(overlay.principal_point->x(), overlay.principal_point->y()),
                11.0 * unit, {palette::kWhite, 1.2 * unit});
-  if (overlay.predicted && finite(*overlay.predicted))
+  if (overlay.predicted && is_finite(*overlay.predicted))
     draw_ellipse(sheet, *overlay.predicted, {palette::kOrange, 1.6 * unit, {5.0, 4.0}});
-  if (overlay.measured && finite(*overlay.measured)) {
+  if (overlay.measured && is_finite(*overlay.measured)) {
     draw_ellipse(sheet, *overlay.measured, {palette::kSkyBlue, 1.6 * unit});
     draw_cross(sheet, on_sheet(overlay.measured->u, overlay.measured->v), 3.0 * unit,
                {palette::kSkyBlue, 1.2 * unit});

@@ -1,5 +1,7 @@
 #include "png_resolution.hpp"
 
+#include "crc32.hpp"
+
 #include <cmath>
 #include <cstdint>
 
@@ -7,16 +9,6 @@ namespace vigia::report {
 namespace {
 
 constexpr std::size_t kHeaderEnd = 8 + 25;  // signature and IHDR
-
-/// CRC-32 as PNG (ISO 3309) has it.
-std::uint32_t checksum(const std::string& bytes) {
-  std::uint32_t crc = 0xffffffffU;
-  for (const char byte : bytes) {
-    crc ^= static_cast<unsigned char>(byte);
-    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1U) ^ ((crc & 1U) != 0 ? 0xedb88320U : 0U);
-  }
-  return ~crc;
-}
 
 std::string big_endian(std::uint32_t value) {
   std::string bytes;
@@ -31,7 +23,7 @@ std::string with_resolution(const std::string& png, double dots_per_inch) {
   const std::string data = big_endian(per_metre) + big_endian(per_metre) + '\x01';
   const std::string chunk = "pHYs" + data;
   return png.substr(0, kHeaderEnd) + big_endian(static_cast<std::uint32_t>(data.size())) + chunk +
-         big_endian(checksum(chunk)) + png.substr(kHeaderEnd);
+         big_endian(crc32(chunk)) + png.substr(kHeaderEnd);
 }
 
 }  // namespace vigia::report

@@ -1,6 +1,7 @@
 #include "replay_json.hpp"
 
 #include "base64.hpp"
+#include "outlines.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -88,13 +89,7 @@ Json landmarks_json(const WorldMap& world) {
 }
 
 Json line_json(const FieldLine& line) {
-  constexpr double kChord_m = 0.2;
-  const int pieces = line.kind == FieldLine::Kind::segment
-                         ? 1
-                         : std::max(8, static_cast<int>(std::ceil(line.length_m() / kChord_m)));
-  Json list = Json::array();
-  for (int i = 0; i <= pieces; ++i) list.push_back(point(line.at(line.length_m() * i / pieces)));
-  return {{"width", rounded(line.width_m)}, {"points", list}};
+  return {{"width", rounded(line.width_m)}, {"points", points(line_points(line))}};
 }
 
 Json goal_json(const FieldGoal& goal) {

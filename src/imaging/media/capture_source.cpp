@@ -1,16 +1,15 @@
 #include "capture_source.hpp"
 
 #include "bgr_frame.hpp"
+#include "opencv_log.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <mutex>
 #include <thread>
 #include <utility>
 #include <vector>
 
-#include <opencv2/core/utils/logger.hpp>
 #include <opencv2/videoio.hpp>
 #include <opencv2/videoio/registry.hpp>
 
@@ -20,13 +19,6 @@ namespace vigia::imaging {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-// OpenCV's own messages may hold an address with its password.
-void silence_opencv() {
-  static std::once_flag once;
-  std::call_once(once,
-                 [] { cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT); });
-}
 
 std::string numbered(const std::string& label, int number) {
   char digits[16];

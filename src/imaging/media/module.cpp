@@ -1,5 +1,6 @@
 #include "capture_source.hpp"
 #include "media.hpp"
+#include "video_file_writer.hpp"
 
 #include <opencv2/imgcodecs.hpp>
 #include <visp3/gui/vpDisplayX.h>
@@ -38,6 +39,11 @@ class LoadedMedia final : public Media {
   std::unique_ptr<PictureSource> open_stream(const StreamAddress& address,
                                              const SourceParams& params) const override {
     return capture_stream(address, params);
+  }
+
+  std::unique_ptr<VideoWriter> write_video(const std::filesystem::path& mp4, int width, int height,
+                                           double pictures_hz) const override {
+    return video_file_writer(mp4, width, height, pictures_hz);
   }
 
   std::unique_ptr<vpDisplay> open_window(vpImage<vpRGBa>& picture,
