@@ -72,9 +72,9 @@ Window outline_box(const Eigen::Isometry3d& cMd, double radius, const CameraMode
   double u1 = -1e9;
   double v1 = -1e9;
   const std::vector<Eigen::Vector2d>& circle = unit_circle();
-  const int step = static_cast<int>(circle.size()) / samples;
+  const std::size_t step = circle.size() / static_cast<std::size_t>(samples);
   for (int i = 0; i < samples; ++i) {
-    const Eigen::Vector2d& at = circle[static_cast<std::size_t>(i * step)];
+    const Eigen::Vector2d& at = circle[static_cast<std::size_t>(i) * step];
     const auto uv = project(model, cMd * Eigen::Vector3d(radius * at.x(), radius * at.y(), 0.0));
     if (!uv && is_perspective(model)) return {};
     if (!uv) continue;
@@ -311,8 +311,9 @@ void DecalView::compute_blurred() {
     blurred_ = tag_coverage(decal_->fields, dHray_, *model_, window);
   } else {
     if (within_square(window)) {
-      blurred_.assign(static_cast<std::size_t>(window.width * window.height),
-                      blurred_one(blur_px_));
+      blurred_.assign(
+          static_cast<std::size_t>(window.width) * static_cast<std::size_t>(window.height),
+          blurred_one(blur_px_));
       return;
     }
     blurred_ = square_coverage(window);

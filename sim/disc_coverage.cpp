@@ -296,7 +296,7 @@ void blur(std::vector<float>& image, const imaging::Window& window, double sigma
 
 float blurred_one(double sigma) {
   const int side = 2 * blur_margin(sigma) + 1;
-  std::vector<float> ones(static_cast<std::size_t>(side * side), 1.0F);
+  std::vector<float> ones(static_cast<std::size_t>(side) * static_cast<std::size_t>(side), 1.0F);
   blur(ones, {0, 0, side, side}, sigma);
   return ones[ones.size() / 2];
 }

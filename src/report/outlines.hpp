@@ -35,7 +35,7 @@ inline std::vector<Eigen::Vector2d> line_points(const FieldLine& line) {
   constexpr double kChord_m = 0.2;
   const int pieces = line.kind == FieldLine::Kind::segment
                          ? 1
-                         : std::max(8, static_cast<int>(std::ceil(line.length_m() / kChord_m)));
+                         : std::max(24, static_cast<int>(std::ceil(line.length_m() / kChord_m)));
   std::vector<Eigen::Vector2d> points;
   for (int i = 0; i <= pieces; ++i) points.push_back(line.at(line.length_m() * i / pieces));
   return points;

@@ -54,3 +54,11 @@ began=$(date +%s%N)
 took_ms=$((($(date +%s%N) - began) / 1000000))
 echo "6 s of a mission in $took_ms ms with --view=fast"
 cmp fast/ticks.csv viewed-armingol-room/ticks.csv || fail "the pace changes the mission"
+
+"$vigia" run "$missions/armingol-room.yaml" --view --no-pictures --quiet --set timeout_s=6 --out orphaned >/dev/null 2>orphaned.log &
+run=$!
+sleep 3
+kill -9 $server
+wait $run || [ $? = 1 ] || fail "the mission fails with its display"
+grep -q 'the window is gone' orphaned.log || fail "nothing is said of the lost display"
+cmp orphaned/ticks.csv viewed-armingol-room/ticks.csv || fail "the lost display changes the mission"
