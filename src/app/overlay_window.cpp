@@ -92,7 +92,17 @@ class Shown {
   std::unique_ptr<vpDisplay> display_;
 };
 
-[[noreturn]] void serve_window(int connection, const std::string& title) {
+/// Closes the files that the process was copied with: Xlib's exit, when the display is lost, would
+/// write what is buffered for them a second time.
+int keep_alone(int connection) {
+  constexpr int kKept = 3;
+  if (connection != kKept) ::dup2(connection, kKept);
+  ::close_range(kKept + 1, ~0U, 0);
+  return kKept;
+}
+
+[[noreturn]] void serve_window(int inherited, const std::string& title) {
+  const int connection = keep_alone(inherited);
   {
     Shown window(title);
     while (window.take(connection)) {
@@ -120,7 +130,6 @@ void OverlayWindow::open() {
     throw InputError("--view: no window can be opened; " + without_);
   process_ = ::fork();
   if (process_ == 0) {
-    ::close(ends[0]);
     serve_window(ends[1], title_);
   }
   ::close(ends[1]);
