@@ -26,6 +26,7 @@ void sync_folder(const std::filesystem::path& file) {
 
 void write_aside(const std::filesystem::path& path, const std::filesystem::path& aside,
                  std::string_view bytes, Durability durability) {
+  reject_special_file(path);
   try {
     OutputFile file(aside);
     file.write(bytes);
@@ -45,6 +46,13 @@ void write_aside(const std::filesystem::path& path, const std::filesystem::path&
 }
 
 }  // namespace
+
+void reject_special_file(const std::filesystem::path& path) {
+  std::error_code unknown;
+  const auto status = std::filesystem::status(path, unknown);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
+    throw InputError("cannot write " + path.string() + ": it is not an ordinary file");
+}
 
 OutputFile::OutputFile(std::filesystem::path path)
     : path_(std::move(path)), file_(std::fopen(path_.c_str(), "wb")) {

@@ -3,9 +3,9 @@
 #include "crc32.hpp"
 
 #include <algorithm>
-#include <system_error>
 
 #include "vigia/core/error.hpp"
+#include "vigia/core/output_file.hpp"
 
 namespace vigia::report {
 namespace {
@@ -60,12 +60,9 @@ std::string header_record() {
   return mcap_record(McapOp::header, content);
 }
 
-/// A file that a finished one would replace must be one, not a device or a folder.
+/// @p file, which a finished one may replace.
 std::filesystem::path replaceable(std::filesystem::path file) {
-  std::error_code unknown;
-  const auto status = std::filesystem::status(file, unknown);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
-    throw InputError("cannot write " + file.string() + ": it is not an ordinary file");
+  reject_special_file(file);
   return file;
 }
 

@@ -30,7 +30,11 @@ void check(const ReplayRun& run) {
 
 std::string page_title(const std::vector<ReplayRun>& runs) {
   if (runs.size() == 1) return fmt::format("{}, seed {}", runs.front().name, runs.front().seed);
-  return fmt::format("{} drives of {}", runs.size(), runs.front().name);
+  const bool alike = std::all_of(runs.begin(), runs.end(), [&](const ReplayRun& run) {
+    return run.name == runs.front().name;
+  });
+  return fmt::format("{} drives of {}", runs.size(),
+                     alike ? runs.front().name : "different missions, on one map");
 }
 
 }  // namespace

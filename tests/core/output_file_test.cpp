@@ -8,6 +8,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "vigia/core/error.hpp"
 #include "vigia/core/shell.hpp"
@@ -34,6 +35,20 @@ TEST_F(SharedFile, TakesThePlaceOfAnEarlierOneAndLeavesNothingAside) {
   std::ifstream stream(file);
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(stream), {}), "later");
   EXPECT_EQ(std::distance(fs::directory_iterator(path("")), fs::directory_iterator()), 1);
+}
+
+TEST_F(SharedFile, DoesNotTakeThePlaceOfWhatIsNoOrdinaryFile) {
+  const fs::path pipe = path("pipe");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const auto& write : {write_file, write_shared_file}) {
+    try {
+      write(pipe, "bytes");
+      FAIL() << "it was written";
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("not an ordinary file"));
+    }
+  }
+  EXPECT_TRUE(fs::is_fifo(pipe));
 }
 
 TEST_F(SharedFile, NamesTheFileThatCannotBeWritten) {

@@ -33,6 +33,10 @@ class OutputFile {
   std::unique_ptr<std::FILE, Closer> file_;
 };
 
+/// A name for new bytes must not take the place of a device, a pipe or a folder.
+/// @throws InputError where @p path is one
+void reject_special_file(const std::filesystem::path& path);
+
 /// Writes a whole file aside and then gives it its name: either the old or the new content is
 /// there, never half of one.
 void write_file(const std::filesystem::path& path, std::string_view bytes);

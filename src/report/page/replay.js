@@ -54,7 +54,8 @@
   }
   function readAddress() {
     const match = /(?:^#|&)t=([0-9.]+)/.exec(location.hash);
-    if (match) show(parseFloat(match[1]), true);
+    const t = match ? parseFloat(match[1]) : NaN;
+    if (Number.isFinite(t)) show(t, true);
   }
   function play(on) {
     playing = on && end > 0;
@@ -596,7 +597,7 @@
   }
   /// One chart. series: {label, t, values, colour (a name), dash, fill, width}; all have a time axis of their own.
   function chart(title, note, unit, series, options) {
-    const holder = element("div", { class: "chart" }, element("h2", {}, title), element("p", {}, note));
+    const holder = element("div", { class: "chart" }, element("h2", {}, unit ? title + ", " + unit : title), element("p", {}, note));
     $("charts").append(holder);
     const joined = uPlot.join(series.map((s) => [s.t, s.values]));
     const make = () => {
@@ -614,10 +615,18 @@
       }, joined, holder);
     };
     const entry = { plot: null };
+    /// The cursor's line, and what each series has there: of several drives' times none has all.
+    entry.follow = () => {
+      const { plot } = entry, nearest = plot.valToIdx(now);
+      const last = (values) => { let i = nearest; while (i > 0 && values[i] == null && nearest - i < 9) --i; return i; };
+      plot.redraw(false);
+      plot.setLegend({ idxs: plot.data.map(last) });
+    };
     /// Once every chart has its place, since a plot does not grow or shrink by itself.
     entry.again = () => {
       if (entry.plot) entry.plot.destroy();
       entry.plot = make();
+      queueMicrotask(entry.follow); // after the plot's own first drawing, which empties its legend
       entry.plot.over.addEventListener("click", () => {
         const left = entry.plot.cursor.left;
         if (left >= 0) show(entry.plot.posToVal(left, "x"));
@@ -629,14 +638,19 @@
   listeners.push(() => {
     // The cursor's line may lag the map by a frame or two: five plots a frame cost a slow machine its rate.
     const entry = plots[redraw++ % Math.max(1, plots.length)];
-    if (!playing) plots.forEach((p) => p.plot.redraw(false));
-    else if (entry) entry.plot.redraw(false);
+    if (!playing) plots.forEach((p) => p.follow());
+    else if (entry) entry.follow();
   });
   /// A row for each landmark, darker where it suits better, and a line at the landmark of the look.
   function suitabilityChart(run, suffix) {
     const { t, landmarks } = run.suitability;
     if (!landmarks.length) return;
-    const rows = landmarks.slice(0, 40), count = rows.length, row = new Map(rows.map((mark, k) => [mark.id, count - k]));
+    // Of more than fit, those that the robot looked at longest, in the map's order.
+    const most = 40, looks = new Map();
+    for (const id of run.target) looks.set(id, (looks.get(id) || 0) + 1);
+    const wanted = new Set([...landmarks].sort((a, b) => (looks.get(b.id) || 0) - (looks.get(a.id) || 0)).slice(0, most));
+    const rows = landmarks.filter((mark) => wanted.has(mark)), count = rows.length, row = new Map(rows.map((mark, k) => [mark.id, count - k]));
+    const part = count < landmarks.length ? `; ${count} of ${landmarks.length} landmarks, those looked at longest` : "";
     // What stays the same for some time is one rectangle.
     const levels = 12, spans = [];
     rows.forEach((mark, k) => {
@@ -665,7 +679,7 @@
     };
     const judged = (time, id) => { const mark = rows.find((one) => one.id === id), i = indexAt(t, time); return mark && i >= 0 ? mark.values[i] : null; };
     const watched = run.target.map((id) => row.has(id) ? row.get(id) : null);
-    chart("Suitability of each landmark" + suffix, "by the planner’s fuzzy rules, from where the robot believed to be: the darker the better, blank where it could not be looked at; line: the landmark of the look",
+    chart("Suitability of each landmark" + suffix, "by the planner’s fuzzy rules, from where the robot believed to be: the darker the better, blank where it could not be looked at; line: the landmark of the look" + part,
           "", [{ label: "look at", t: run.t, values: watched, colour: "mark", width: 3, gaps: true,
                  value: (u, v, s, i) => { if (v === null || v === undefined) return "–"; const id = rows[count - v].id, fit = judged(u.data[0][i], id); return `L${id}` + (fit === null ? "" : `, ${fit.toFixed(2)}`); } }],
           { range: () => [0.4, count + 0.6], paint, height: Math.max(170, 70 + 15 * count),
@@ -685,11 +699,13 @@
       values: track.localizer.bound.map((v) => 100 * v), colour: runs.length > 1 ? colour(track) : "c2", dash: [2, 3], width: 1.4 }));
     const shown = errors(primary);
     const highest = 1.1 * Math.max(3 * top(boundOf.flatMap((s) => s.values)), top(shown.flatMap((s) => s.values)));
-    chart("Position error", "what the driving localizer is off by, its own 3σ, and the root of the posterior Cramér–Rao bound’s trace; shaded: looks, stops, lost",
+    chart("Position error", "what the driving localizer is off by" + (runs.length > 1 ? " and" : ", its own 3σ, and") + " the root of the posterior Cramér–Rao bound’s trace" + (runs.length > 1 ? "" : "; shaded: looks, stops, lost"),
           "cm", [...bands, ...shown, ...boundOf], { range: (u, low, high) => [0, Math.min(high, highest) || 1] });
     if (tracks.length > primary.length)
       chart("Position error, every localizer", "", "cm", errors(tracks), { range: (u, low, high) => [0, 1.05 * high || 1] });
-    const limits = runs[0].limits ? [limitLine("limit 1", runs[0].limits[0], [6, 4]), limitLine("limit 2", runs[0].limits[1], [2, 3])] : [];
+    const limited = runs.filter((run) => run.limits), alike = limited.every((run) => run.limits.join() === limited[0].limits.join());
+    const limits = (alike ? limited.slice(0, 1) : limited).flatMap((run) => [1, 2].map((which) =>
+      limitLine(`limit ${which}` + (alike ? "" : ` of #${runs.indexOf(run) + 1}`), run.limits[which - 1], which === 1 ? [6, 4] : [2, 3])));
     chart("Uncertainty", "√λ of the position's covariance, and the limits at which the robot looks and stops", "cm",
           [...primary.map((track) => ({ label: track.label, values: track.localizer.sigma.map((v) => 100 * v), ...common(track) })), ...limits],
           { range: (u, low, high) => [0, 1.05 * high || 1] });
@@ -754,7 +770,10 @@
   const layOut = () => { colours = readColours(); showAll(); plots.forEach((p) => p.again()); };
   window.addEventListener("resize", () => { clearTimeout(resizing); resizing = setTimeout(layOut, 120); });
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", layOut);
-  window.addEventListener("beforeprint", layOut);
+  // Paper is white whatever the screen is; what is drawn does not know of it by itself.
+  const onPaper = (is) => { document.documentElement.classList.toggle("printed", is); layOut(); };
+  window.addEventListener("beforeprint", () => onPaper(true));
+  window.addEventListener("afterprint", () => onPaper(false));
 
   colours = readColours();
   makeHeader();
