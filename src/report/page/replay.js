@@ -483,8 +483,8 @@
       };
       const picture = { shown: -2 };
       picture.draw = (t) => {
-        const i = indexAt(stamps, t);
-        if (i === picture.shown || i < 0) return;
+        const i = Math.max(0, indexAt(stamps, t)); // before the first, that
+        if (i === picture.shown) return;
         for (let ahead = 1; ahead <= 8; ++ahead) decode(i + ahead);
         const image = decode(i);
         if (!image.complete) { image.onload = () => { if (picture.wanted === i) picture.draw(now); }; picture.wanted = i; return; }
