@@ -16,13 +16,14 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-/// A mission that ends after two seconds, with what its video holds.
+/// A mission that ends after 15 ticks, with what its video holds.
 class RunWithVideo : public ::testing::Test {
  protected:
   vigia::testing::ProcessResult run(const std::string& mission, const std::string& more) const {
     return vigia::testing::run_process(
         std::string(VIGIA_PROGRAM) + " run " VIGIA_SOURCE_DIR "/config/missions/" + mission +
-            ".yaml --no-pictures --quiet --set timeout_s=2 --out " + folder_.string() + " " + more,
+            ".yaml --no-pictures --quiet --set timeout_s=0.6 --out " + folder_.string() + " " +
+            more,
         dir_.path());
   }
   std::string text(const std::string& name) const {
@@ -61,11 +62,12 @@ TEST_F(RunWithVideo, IsTheSameMissionAsWithout) {
 }
 
 TEST_F(RunWithVideo, ThatTheDiskDoesNotHoldIsAnErrorAndLeavesNothing) {
-  const auto result = vigia::testing::run_process(
-      "ulimit -f 40; " VIGIA_PROGRAM " run " VIGIA_SOURCE_DIR
-      "/config/missions/armingol-room.yaml --video --no-pictures --quiet --set timeout_s=4 --out " +
-          folder_.string(),
-      dir_.path());
+  const auto result =
+      vigia::testing::run_process("ulimit -f 40; " VIGIA_PROGRAM " run " VIGIA_SOURCE_DIR
+                                  "/config/missions/armingol-room.yaml --video --no-pictures "
+                                  "--quiet --set timeout_s=1.2 --out " +
+                                      folder_.string(),
+                                  dir_.path());
   EXPECT_EQ(result.status, 2) << result.err;
   EXPECT_THAT(result.err, HasSubstr("cannot write"));
   EXPECT_FALSE(fs::exists(folder_));
