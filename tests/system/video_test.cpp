@@ -16,14 +16,13 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-/// A mission that ends after 15 ticks, with what its video holds.
+/// A mission that ends after a second, with what its video holds.
 class RunWithVideo : public ::testing::Test {
  protected:
   vigia::testing::ProcessResult run(const std::string& mission, const std::string& more) const {
     return vigia::testing::run_process(
         std::string(VIGIA_PROGRAM) + " run " VIGIA_SOURCE_DIR "/config/missions/" + mission +
-            ".yaml --no-pictures --quiet --set timeout_s=0.6 --out " + folder_.string() + " " +
-            more,
+            ".yaml --no-pictures --quiet --set timeout_s=1 --out " + folder_.string() + " " + more,
         dir_.path());
   }
   std::string text(const std::string& name) const {
