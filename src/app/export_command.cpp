@@ -4,11 +4,14 @@
 #include "progress.hpp"
 #include "run_again.hpp"
 
+#include <cmath>
 #include <memory>
 #include <string>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+
+#include "vigia/core/error.hpp"
 
 namespace vigia::app {
 namespace {
@@ -23,6 +26,9 @@ struct ExportOptions {
 };
 
 int export_run(const ExportOptions& options) {
+  if (!std::isfinite(options.images_hz))  // which CLI11 takes for one in the range
+    throw InputError(fmt::format("--images-hz: found '{}', must lie in [0, {}]", options.images_hz,
+                                 kMostImages_hz));
   const mission::MissionSetup setup = mission::load_mission(mission_file(options.folder));
   Interruption interruption;
   evaluation::DriveScorer scorer;

@@ -67,9 +67,11 @@ TEST_F(ARunFolder, IsExportedWithoutPicturesWhereNoneAreWanted) {
   const fs::path file = dir_.path() / "drive.mcap";
   EXPECT_EQ(export_to(file, "--images-hz 0").status, 0);
   EXPECT_EQ(count(vigia::testing::read_text(file), "jpeg\""), 0U);
-  const auto result = export_to(file, "--images-hz -1");
-  EXPECT_EQ(result.status, 2);
-  EXPECT_THAT(result.err, HasSubstr("--images-hz"));
+  for (const char* wrong : {"-1", "nan"}) {
+    const auto result = export_to(file, std::string("--images-hz ") + wrong);
+    EXPECT_EQ(result.status, 2);
+    EXPECT_THAT(result.err, HasSubstr("--images-hz"));
+  }
 }
 
 TEST_F(ARunFolder, ThatIsHostileOrCutOffIsNamedAndLeavesNoFile) {
